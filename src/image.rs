@@ -1,0 +1,79 @@
+//! The picture: N × N pixels of three linear 32-bit floats.
+
+use std::fmt;
+
+/// The largest number of pixels along a side.
+pub const MAX_SIZE: u32 = 16384;
+
+/// A square picture of N × N pixels, each red, green and blue as linear floats: not clamped, not gamma-encoded.
+///
+/// Rows go from the **bottom** to the top, as `glDrawPixels` and `glTexSubImage2D` lay them out; a row goes from left to right.
+#[derive(Clone, PartialEq)]
+pub struct Image {
+    size: u32,
+    samples: Vec<f32>,
+}
+
+/// An image that cannot be made.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ImageError {
+    /// N is not from 1 to [`MAX_SIZE`].
+    #[error("a picture of {0} × {0} pixels cannot be made: choose a size from 1 to {MAX_SIZE}")]
+    Size(u32),
+    /// There is not enough memory for N × N × 3 floats.
+    #[error("not enough memory for a picture of {0} × {0} pixels: choose a smaller size")]
+    Memory(u32),
+}
+
+impl Image {
+    /// A black picture of `size` × `size` pixels.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] unless 1 ≤ `size` ≤ [`MAX_SIZE`], [`ImageError::Memory`] where the floats do not fit.
+    pub fn new(size: u32) -> Result<Image, ImageError> {
+        if !(1..=MAX_SIZE).contains(&size) {
+            return Err(ImageError::Size(size));
+        }
+        let length = size as usize * size as usize * 3;
+        let mut samples = Vec::new();
+        samples
+            .try_reserve_exact(length)
+            .map_err(|_| ImageError::Memory(size))?;
+        samples.resize(length, 0.0);
+        Ok(Image { size, samples })
+    }
+
+    /// N, the number of pixels along a side.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// All 3 N² floats: red, green, blue of each pixel, rows from the bottom.
+    pub fn samples(&self) -> &[f32] {
+        &self.samples
+    }
+
+    /// The same floats, to be written.
+    pub fn samples_mut(&mut self) -> &mut [f32] {
+        &mut self.samples
+    }
+
+    /// Red, green and blue at `column` from the left and `row` from the bottom; `None` outside the picture.
+    pub fn pixel(&self, column: u32, row: u32) -> Option<[f32; 3]> {
+        if column >= self.size || row >= self.size {
+            return None;
+        }
+        let first = (row as usize * self.size as usize + column as usize) * 3;
+        Some([
+            self.samples[first],
+            self.samples[first + 1],
+            self.samples[first + 2],
+        ])
+    }
+}
+
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Image({0} × {0})", self.size)
+    }
+}

@@ -1,0 +1,166 @@
+//! What exists: solids, a surface, a light, one material.
+
+mod file;
+mod orientation;
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+pub use file::{MAX_SOLIDS, SceneError};
+
+/// The built-in scene, as the TOML text that it is read from.
+pub const BUILTIN_TOML: &str = include_str!("scene/builtin.toml");
+
+/// A sphere: all points at most `radius` from `center`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its radius, 1e-30 to 1e6.
+    pub radius: f64,
+    /// Its colour c.
+    pub color: DVec3,
+}
+
+/// A tetrahedron that is not flat. Face k is the one opposite vertex k.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tetrahedron {
+    /// Its vertices, in any order.
+    pub vertices: [DVec3; 4],
+    /// Its colour c.
+    pub color: DVec3,
+    /// Whether its edges 0→1, 0→2, 0→3 are right-handed, which exact arithmetic has decided.
+    pub right_handed: bool,
+}
+
+/// The glazed surface: the square y = `height`, |x| ≤ `half_width`, |z| ≤ `half_width`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Its y.
+    pub height: f64,
+    /// Half the length of its sides, 1e-30 to 1e6.
+    pub half_width: f64,
+    /// Its colour where it mirrors nothing.
+    pub color: DVec3,
+    /// The weight of the mirrored colour.
+    pub reflectance: f64,
+}
+
+/// The light: infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// The way the light travels: any length but 0.
+    pub direction: DVec3,
+    /// I of equation 4-1.
+    pub intensity: DVec3,
+    /// I_a of equation 4-1.
+    pub ambient_intensity: DVec3,
+}
+
+impl Light {
+    /// The direction, times the power of two that makes its largest component at least 1 and less than 2: exactly the
+    /// same direction, and its square neither overflows nor underflows.
+    pub(crate) fn scaled_direction(&self) -> DVec3 {
+        let exponent = libm::ilogb(self.direction.abs().max_element());
+        DVec3::from_array(
+            self.direction
+                .to_array()
+                .map(|component| libm::scalbn(component, -exponent)),
+        )
+    }
+}
+
+/// The coefficients of equation 4-1, shared by all solids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// k_a.
+    pub ambient: DVec3,
+    /// k_d.
+    pub diffuse: DVec3,
+    /// k_s.
+    pub specular: DVec3,
+    /// n, 1 to 1 000 000.
+    pub exponent: u32,
+}
+
+/// A scene that keeps every rule of the file format: made by [`Scene::builtin`] or [`Scene::from_toml`] only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    background: DVec3,
+    surface: Option<Surface>,
+    light: Light,
+    material: Material,
+    spheres: Vec<Sphere>,
+    tetrahedra: Vec<Tetrahedron>,
+}
+
+impl Scene {
+    /// The document's scene: two spheres and a tetrahedron on a glazed surface.
+    ///
+    /// ```
+    /// let scene = firsthit::Scene::builtin();
+    /// assert_eq!((scene.spheres().len(), scene.tetrahedra().len()), (2, 1));
+    /// ```
+    pub fn builtin() -> Scene {
+        static BUILTIN: LazyLock<Scene> = LazyLock::new(|| {
+            #[expect(clippy::expect_used, reason = "a constant text, which a test reads")]
+            file::read(BUILTIN_TOML, None).expect("the built-in scene is a scene")
+        });
+        BUILTIN.clone()
+    }
+
+    /// Reads a scene file.
+    ///
+    /// What the text leaves out is as in the built-in scene: `background`, `[light]`, `[material]`, `surface.color` and
+    /// `surface.reflectance`, whole or in part. Geometry cannot be left out, and without `[surface]` there is none.
+    ///
+    /// ```
+    /// use firsthit::Scene;
+    /// let ball = Scene::from_toml("[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\ncolor = [1.0, 0.5, 0.0]")?;
+    /// assert!(ball.surface().is_none());
+    /// let refused = Scene::from_toml("[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.0\ncolor = [1.0, 0.5, 0.0]");
+    /// assert_eq!(refused.unwrap_err().field.as_deref(), Some("sphere[0].radius"));
+    /// # Ok::<(), firsthit::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A text that is not TOML; an unknown key; a missing field; a NaN or an infinity; a coordinate or height that is
+    /// neither 0 nor of magnitude 1e-30 to 1e6; a radius or half width outside of that range; a colour, intensity,
+    /// coefficient or reflectance that is neither 0 nor within it; a flat tetrahedron; a light direction of 0, or with
+    /// components that differ by more than a factor 1e30; an exponent that is not a whole number from 1 to 1 000 000; more
+    /// than [`MAX_SOLIDS`] solids.
+    pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
+        file::read(text, Some(&Scene::builtin()))
+    }
+
+    /// What is seen where nothing is hit.
+    pub fn background(&self) -> DVec3 {
+        self.background
+    }
+
+    /// The surface, if there is one.
+    pub fn surface(&self) -> Option<&Surface> {
+        self.surface.as_ref()
+    }
+
+    /// The light.
+    pub fn light(&self) -> &Light {
+        &self.light
+    }
+
+    /// The material of all solids.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// The spheres, in the file's order.
+    pub fn spheres(&self) -> &[Sphere] {
+        &self.spheres
+    }
+
+    /// The tetrahedra, in the file's order.
+    pub fn tetrahedra(&self) -> &[Tetrahedron] {
+        &self.tetrahedra
+    }
+}

@@ -1,0 +1,39 @@
+//! Lines and rays: what an eye, a mirror or a shadow looks along.
+
+use super::real::Real;
+use super::vector::Vector;
+
+/// The points `origin` + t · `direction`; a ray where only t > 0 counts.
+#[derive(Clone, Copy)]
+pub(super) struct Line<R> {
+    pub(super) origin: Vector<R>,
+    pub(super) direction: Direction<R>,
+}
+
+/// The way a line goes, of any length, with what every intersection along it shares.
+#[derive(Clone, Copy)]
+pub(super) struct Direction<R> {
+    pub(super) vector: Vector<R>,
+    pub(super) squared_length: R,
+}
+
+impl<R: Real> Line<R> {
+    /// The point at parameter `t`.
+    pub(super) fn at(&self, t: R) -> Vector<R> {
+        self.origin + self.direction.vector * t
+    }
+}
+
+/// Where a line first meets a solid.
+#[derive(Clone, Copy)]
+pub(super) struct Hit<R> {
+    /// The parameter t of the line there.
+    pub(super) depth: R,
+    /// The point itself.
+    pub(super) point: Vector<R>,
+    /// The outward normal, of length `normal_length`.
+    pub(super) normal: Vector<R>,
+    pub(super) normal_length: R,
+    /// The face it enters, for a tetrahedron.
+    pub(super) face: Option<u8>,
+}

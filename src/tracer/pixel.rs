@@ -1,0 +1,266 @@
+//! One pixel: first hit, shading, shadow, mirror, each as far as the stage asks for it.
+
+use super::decision::{Decision, Seen};
+use super::line::{Hit, Line};
+use super::real::Real;
+use super::surface::Surface;
+use super::vector::Vector;
+use super::view::{Frame, Reach, Solids, View, looking};
+use crate::scene::Scene;
+use crate::stage::Stage;
+
+/// Everything about a frame that its pixels share.
+pub(super) struct Picture<'a, R> {
+    scene: &'a Scene,
+    stage: Stage,
+    size: u32,
+    view: View<R>,
+    floor: Option<Floor<R>>,
+}
+
+/// The surface, from stage 5 on.
+struct Floor<R> {
+    surface: Surface<R>,
+    color: Vector<R>,
+    /// (N/2) · height.
+    height_in_pixels: R,
+    mirror: Option<Mirror<R>>,
+}
+
+/// What the surface mirrors, from stage 6 on.
+struct Mirror<R> {
+    view: View<R>,
+    reflectance: R,
+}
+
+/// A pixel: what was decided, and the colour that follows from it.
+type Pixel = (Decision, [f32; 3]);
+
+impl<'a, R: Real> Picture<'a, R> {
+    /// `sin` and `cos` are those of α.
+    pub(super) fn new(
+        scene: &'a Scene,
+        stage: Stage,
+        sin: R,
+        cos: R,
+        size: u32,
+    ) -> Result<Self, R::Doubt> {
+        let half = R::exact(f64::from(size) / 2.0);
+        let frame = Frame {
+            sin,
+            cos,
+            scale: R::exact(3.0) * half,
+        };
+        let floor = match scene.surface().filter(|_| stage >= Stage::Shadow) {
+            None => None,
+            Some(described) => {
+                let surface = frame.surface(described);
+                let mirror = if stage >= Stage::Reflection {
+                    let view = View::new(scene, &frame, Some(surface.height))?;
+                    Some(Mirror {
+                        view,
+                        reflectance: R::exact(described.reflectance),
+                    })
+                } else {
+                    None
+                };
+                let height_in_pixels = R::exact(described.height) * half;
+                Some(Floor {
+                    surface,
+                    color: Vector::exact(described.color),
+                    height_in_pixels,
+                    mirror,
+                })
+            }
+        };
+        Ok(Picture {
+            scene,
+            stage,
+            size,
+            view: View::new(scene, &frame, None)?,
+            floor,
+        })
+    }
+
+    /// The pixel at `column` from the left and `row` from the bottom.
+    pub(super) fn pixel(&self, column: u32, row: u32) -> Result<Pixel, R::Doubt> {
+        let (decision, color) = match self.stage {
+            Stage::Image => quadrant(column, row, self.size),
+            Stage::Spheres => self.flat(column, row, Solids::Spheres)?,
+            Stage::Tetrahedron => self.flat(column, row, Solids::Tetrahedra)?,
+            Stage::Shading => self.lit(column, row)?,
+            Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(column, row)?,
+        };
+        Ok((
+            decision,
+            [
+                color.x.to_sample()?,
+                color.y.to_sample()?,
+                color.z.to_sample()?,
+            ],
+        ))
+    }
+
+    /// The whole line of sight through a pixel.
+    fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
+        let half = f64::from(self.size) / 2.0;
+        let origin = [f64::from(column) - half, f64::from(row) - half, half]
+            .map(|coordinate| R::exact(3.0 * coordinate));
+        Line {
+            origin: Vector::new(origin[0], origin[1], origin[2]),
+            direction: looking(),
+        }
+    }
+
+    /// Stages 2 and 3: the first hit, in the solid's colour.
+    fn flat(
+        &self,
+        column: u32,
+        row: u32,
+        solids: Solids,
+    ) -> Result<(Decision, Vector<R>), R::Doubt> {
+        Ok(
+            match self
+                .view
+                .first_hit(&self.eye_ray(column, row), Reach::Line, solids)?
+            {
+                Some((solid, hit)) => {
+                    (Decision::Solid(seen(solid, &hit, false)), self.color(solid))
+                }
+                None => self.background(),
+            },
+        )
+    }
+
+    /// Stage 4: the first hit, shaded.
+    fn lit(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
+        Ok(
+            match self
+                .view
+                .first_hit(&self.eye_ray(column, row), Reach::Line, Solids::All)?
+            {
+                Some((solid, hit)) => {
+                    let light = self.view.shading.lit(hit.normal, hit.normal_length)?;
+                    (
+                        Decision::Solid(seen(solid, &hit, false)),
+                        self.color(solid).times(light),
+                    )
+                }
+                None => self.background(),
+            },
+        )
+    }
+
+    /// Stages 5 to 7: the first hit among the solids and the surface.
+    fn traced(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
+        let ray = self.eye_ray(column, row);
+        let hit = self.view.first_hit(&ray, Reach::Line, Solids::All)?;
+        if let Some(floor) = &self.floor {
+            let depth =
+                R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
+            let hides = match &hit {
+                // Of a solid and the surface at the same depth, the solid is seen.
+                Some((_, hit)) => (hit.depth - depth).sign()?.is_gt(),
+                None => true,
+            };
+            let point = ray.at(depth);
+            if hides && floor.surface.contains(point)? {
+                return self.surface_at(floor, point);
+            }
+        }
+        Ok(match hit {
+            Some((solid, hit)) => {
+                let (in_shadow, color) = self.solid(&self.view, solid, &hit)?;
+                (Decision::Solid(seen(solid, &hit, in_shadow)), color)
+            }
+            None => self.background(),
+        })
+    }
+
+    /// The surface where it is seen: in shadow, mirroring, or plain.
+    fn surface_at(
+        &self,
+        floor: &Floor<R>,
+        point: Vector<R>,
+    ) -> Result<(Decision, Vector<R>), R::Doubt> {
+        if self.view.is_shadowed(point, None)? {
+            return Ok((Decision::SurfaceInShadow, self.view.shading.ambient()));
+        }
+        if let Some(mirror) = &floor.mirror {
+            // The eye's ray goes on straight into the reflected scene.
+            let ray = Line {
+                origin: point,
+                direction: looking(),
+            };
+            if let Some((solid, hit)) = mirror.view.first_hit(&ray, Reach::Ahead, Solids::All)? {
+                let (in_shadow, color) = self.solid(&mirror.view, solid, &hit)?;
+                return Ok((
+                    Decision::Mirrored(seen(solid, &hit, in_shadow)),
+                    color * mirror.reflectance,
+                ));
+            }
+        }
+        Ok((Decision::Surface, floor.color))
+    }
+
+    /// Whether a point of a solid is in shadow, and its colour.
+    fn solid(
+        &self,
+        view: &View<R>,
+        solid: usize,
+        hit: &Hit<R>,
+    ) -> Result<(bool, Vector<R>), R::Doubt> {
+        let in_shadow = hit.normal.dot(view.shading.to_light.vector).sign()?.is_le()
+            || view.is_shadowed(hit.point, Some(solid))?
+            || match &self.floor {
+                Some(floor) => floor.surface.is_ahead(&view.ray_to_light(hit.point))?,
+                None => false,
+            };
+        let light = if in_shadow {
+            view.shading.ambient()
+        } else {
+            view.shading.lit(hit.normal, hit.normal_length)?
+        };
+        Ok((in_shadow, self.color(solid).times(light)))
+    }
+
+    /// The colour c of a solid.
+    fn color(&self, solid: usize) -> Vector<R> {
+        let spheres = self.scene.spheres();
+        Vector::exact(match spheres.get(solid) {
+            Some(sphere) => sphere.color,
+            None => self.scene.tetrahedra()[solid - spheres.len()].color,
+        })
+    }
+
+    fn background(&self) -> (Decision, Vector<R>) {
+        (Decision::Background, Vector::exact(self.scene.background()))
+    }
+}
+
+fn seen<R>(solid: usize, hit: &Hit<R>, in_shadow: bool) -> Seen {
+    // A scene has at most 4096 solids.
+    Seen {
+        solid: solid as u16,
+        face: hit.face,
+        in_shadow,
+    }
+}
+
+/// Code 2-1, the order of its `<=` and `>=` kept, with 250 read as N/2.
+fn quadrant<R: Real>(column: u32, row: u32, size: u32) -> (Decision, Vector<R>) {
+    let (x, y) = (2 * column, 2 * row);
+    let (number, [red, green, blue]) = if x <= size && y <= size {
+        (0, [0.3, 0.3, 0.0])
+    } else if x <= size && y >= size {
+        (1, [0.0, 0.3, 0.3])
+    } else if x >= size && y <= size {
+        (2, [0.3, 0.0, 0.3])
+    } else {
+        (3, [0.0, 0.0, 0.0])
+    };
+    (
+        Decision::Quadrant(number),
+        Vector::new(R::exact(red), R::exact(green), R::exact(blue)),
+    )
+}

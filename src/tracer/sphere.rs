@@ -1,0 +1,55 @@
+//! A line and a sphere: equation 3-1 in its perpendicular form.
+
+use std::cmp::Ordering;
+
+use super::line::{Hit, Line};
+use super::real::Real;
+use super::vector::Vector;
+
+/// A sphere in view space.
+pub(super) struct Sphere<R> {
+    pub(super) center: Vector<R>,
+    pub(super) radius: R,
+}
+
+impl<R: Real> Sphere<R> {
+    /// The moment (o − c) × d of a line about the centre: its length is |d| times the line's distance from the centre.
+    fn moment(&self, line: &Line<R>) -> Vector<R> {
+        (line.origin - self.center).cross(line.direction.vector)
+    }
+
+    /// |d|²R² − |(o − c) × d|², which is the discriminant of equation 3-1 by Lagrange's identity. Here nothing large
+    /// cancels: the textbook's (d·(o − c))² − |d|²(|o − c|² − R²) loses every digit for a small sphere far away.
+    fn discriminant(&self, line: &Line<R>, moment: Vector<R>) -> R {
+        line.direction.squared_length * self.radius.squared() - moment.squared_length()
+    }
+
+    /// The first point of the whole line in the sphere; touching counts.
+    pub(super) fn first_hit(&self, line: &Line<R>) -> Result<Option<Hit<R>>, R::Doubt> {
+        let moment = self.moment(line);
+        let discriminant = self.discriminant(line, moment);
+        if discriminant.sign()?.is_lt() {
+            return Ok(None);
+        }
+        let root = discriminant.sqrt();
+        let d = line.direction;
+        let depth = ((self.center - line.origin).dot(d.vector) - root) / d.squared_length;
+        // Across the line the normal is d × ((o − c) × d) / |d|², along it −√D d / |d|²: no difference of points far away.
+        let normal = (d.vector.cross(moment) - d.vector * root).divided_by(d.squared_length);
+        Ok(Some(Hit {
+            depth,
+            point: self.center + normal,
+            normal,
+            normal_length: self.radius,
+            face: None,
+        }))
+    }
+
+    /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line meets it, and the ray
+    /// moves toward the centre.
+    pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        let approach = (self.center - ray.origin).dot(ray.direction.vector);
+        Ok(approach.sign()? == Ordering::Greater
+            && self.discriminant(ray, self.moment(ray)).sign()?.is_ge())
+    }
+}

@@ -1,0 +1,96 @@
+//! A line and the glazed surface: a square in a horizontal plane.
+
+use std::cmp::Ordering;
+
+use super::line::Line;
+use super::real::Real;
+use super::vector::Vector;
+
+/// The square in view space: turned about y with the view, but always level.
+pub(super) struct Surface<R> {
+    pub(super) height: R,
+    pub(super) half_width: R,
+    pub(super) sin: R,
+    pub(super) cos: R,
+}
+
+impl<R: Real> Surface<R> {
+    /// The coordinates along the square's sides of a level vector.
+    fn along_sides(&self, v: Vector<R>) -> [R; 2] {
+        [
+            v.x * self.cos + v.z * self.sin,
+            v.z * self.cos - v.x * self.sin,
+        ]
+    }
+
+    /// Whether a point of the square's plane lies in the square; its border belongs to it.
+    pub(super) fn contains(&self, point: Vector<R>) -> Result<bool, R::Doubt> {
+        self.contains_scaled(point, self.half_width)
+    }
+
+    /// The same with point and square scaled by one positive factor, which is in `half_width` already.
+    fn contains_scaled(&self, point: Vector<R>, half_width: R) -> Result<bool, R::Doubt> {
+        for coordinate in self.along_sides(point) {
+            if (half_width - coordinate.abs()?).sign()?.is_lt() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether the ray meets the square at some t > 0, from either side; one that lies in its plane, if it meets it there.
+    pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        let climb = ray.direction.vector.y;
+        let rise = self.height - ray.origin.y;
+        match (climb.sign()?, rise.sign()?) {
+            (Ordering::Equal, Ordering::Equal) => self.is_ahead_in_plane(ray),
+            (Ordering::Equal, _) | (_, Ordering::Equal) => Ok(false),
+            (up, toward) if up == toward => {
+                // The point at t = rise/climb, times |climb|: no division, so that the border is as sharp as can be.
+                let (climb, rise) = (climb.abs()?, rise.abs()?);
+                self.contains_scaled(
+                    ray.origin * climb + ray.direction.vector * rise,
+                    self.half_width * climb,
+                )
+            }
+            _ => Ok(false),
+        }
+    }
+
+    /// The same for a ray in the square's own plane: the slabs between opposite sides, cut out of t > 0.
+    fn is_ahead_in_plane(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        let origin = self.along_sides(ray.origin);
+        let direction = self.along_sides(ray.direction.vector);
+        let (mut enter, mut leave): (Option<R>, Option<R>) = (None, None);
+        for (start, speed) in origin.into_iter().zip(direction) {
+            let heading = speed.sign()?;
+            if heading.is_eq() {
+                if (self.half_width - start.abs()?).sign()?.is_lt() {
+                    return Ok(false);
+                }
+                continue;
+            }
+            let (near, far) = if heading.is_gt() {
+                (-self.half_width - start, self.half_width - start)
+            } else {
+                (self.half_width - start, -self.half_width - start)
+            };
+            let (near, far) = (near / speed, far / speed);
+            enter = match enter {
+                Some(other) if (other - near).sign()?.is_ge() => Some(other),
+                _ => Some(near),
+            };
+            leave = match leave {
+                Some(other) if (far - other).sign()?.is_ge() => Some(other),
+                _ => Some(far),
+            };
+        }
+        match (enter, leave) {
+            (Some(enter), Some(leave)) => {
+                Ok(leave.sign()?.is_gt() && (leave - enter).sign()?.is_ge())
+            }
+            // A ray that moves along neither side does not exist: its direction is not 0.
+            _ => Ok(true),
+        }
+    }
+}

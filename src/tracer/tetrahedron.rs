@@ -1,0 +1,162 @@
+//! A line and a tetrahedron: equations 3-2 and 3-3 for a closed, watertight solid.
+//!
+//! A line meets a convex solid where it has entered every face that it enters before it leaves any that it leaves.
+//! Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To compare two faces i and j, the quotients
+//! are not needed: f_i g_j − f_j g_i = −((n_i × n_j) × d)·(o − a) for a vertex a of both, and n_i × n_j is the edge that
+//! they share, times six volumes. So every decision about a line is the sign of one number an edge, the *edge function*
+//! of equation 3-3: on which side of the edge the line passes. The two faces beside an edge read the same number, and a
+//! line cannot slip between them.
+
+use std::cmp::Ordering;
+
+use super::line::{Direction, Hit, Line};
+use super::real::Real;
+use super::vector::Vector;
+
+/// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from outside, for a tetrahedron
+/// whose edges 0→1, 0→2, 0→3 are right-handed.
+const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// The edge that faces i < j share, from its first to its last vertex along n_i × n_j.
+const EDGES: [(usize, usize, [usize; 2]); 6] = [
+    (0, 1, [2, 3]),
+    (0, 2, [3, 1]),
+    (0, 3, [1, 2]),
+    (1, 2, [0, 3]),
+    (1, 3, [2, 0]),
+    (2, 3, [0, 1]),
+];
+
+/// A tetrahedron in view space.
+pub(super) struct Tetrahedron<R> {
+    vertices: [Vector<R>; 4],
+    /// Outward, of length `normal_lengths`.
+    normals: [Vector<R>; 4],
+    normal_lengths: [R; 4],
+    right_handed: bool,
+}
+
+/// A tetrahedron as lines of one direction meet it.
+pub(super) struct Sight<R> {
+    /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0 where it runs along.
+    crossing: [Ordering; 4],
+    /// g itself.
+    speed: [R; 4],
+    /// The moment of each of [`EDGES`]: (n_i × n_j) × d without its positive factor.
+    moments: [Vector<R>; 6],
+}
+
+impl<R: Real> Tetrahedron<R> {
+    /// `right_handed`: whether the edges 0→1, 0→2, 0→3 are, which is decided exactly where the scene is read.
+    pub(super) fn new(vertices: [Vector<R>; 4], right_handed: bool) -> Self {
+        let normals = FACES.map(|[a, b, c]| {
+            let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+            if right_handed { normal } else { -normal }
+        });
+        Tetrahedron {
+            vertices,
+            normals,
+            normal_lengths: normals.map(Vector::length),
+            right_handed,
+        }
+    }
+
+    /// What all lines of one direction share.
+    pub(super) fn sight(&self, direction: &Direction<R>) -> Result<Sight<R>, R::Doubt> {
+        let speed = self.normals.map(|normal| normal.dot(direction.vector));
+        let moments = EDGES.map(|(_, _, [from, to])| {
+            let moment = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
+            if self.right_handed { moment } else { -moment }
+        });
+        let mut crossing = [Ordering::Equal; 4];
+        for (sign, speed) in crossing.iter_mut().zip(speed) {
+            *sign = speed.sign()?;
+        }
+        Ok(Sight {
+            crossing,
+            speed,
+            moments,
+        })
+    }
+
+    /// f of a face: positive where `point` is outside of it, in units of the normal's length.
+    fn outside(&self, face: usize, point: Vector<R>) -> R {
+        self.normals[face].dot(point - self.vertices[FACES[face][0]])
+    }
+
+    /// The edge function of `EDGES[edge]`, for its faces i < j. Where the line enters i and leaves j it is not negative
+    /// if and only if t_i ≤ t_j; where it enters both, if and only if t_i ≥ t_j.
+    fn side(&self, edge: usize, sight: &Sight<R>, line: &Line<R>) -> Result<Ordering, R::Doubt> {
+        sight.moments[edge]
+            .dot(line.origin - self.vertices[EDGES[edge].2[0]])
+            .sign()
+    }
+
+    /// The face where the whole line first meets the solid; touching counts.
+    fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<Option<usize>, R::Doubt> {
+        for face in 0..4 {
+            if sight.crossing[face].is_eq() && self.outside(face, line.origin).sign()?.is_gt() {
+                return Ok(None);
+            }
+        }
+        // The faces in the order of their number; `last` is the one entered last among those before, so that of several
+        // entered at once the lowest stays.
+        let mut last = None;
+        for face in (0..4).filter(|&face| sight.crossing[face].is_lt()) {
+            last = match last {
+                Some(before) if self.side(edge_of(before, face), sight, line)?.is_ge() => {
+                    Some(before)
+                }
+                _ => Some(face),
+            };
+        }
+        let Some(entered) = last else { return Ok(None) };
+        for left in (0..4).filter(|&face| sight.crossing[face].is_gt()) {
+            let (i, j) = (entered.min(left), entered.max(left));
+            // The function of an edge is written for its lower face entered and its higher face left.
+            let side = self.side(edge_of(i, j), sight, line)?;
+            let enters_first = if entered == i { side } else { side.reverse() };
+            if enters_first.is_lt() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(entered))
+    }
+
+    /// The first point of the whole line in the solid.
+    pub(super) fn first_hit(
+        &self,
+        sight: &Sight<R>,
+        line: &Line<R>,
+    ) -> Result<Option<Hit<R>>, R::Doubt> {
+        Ok(self.entered_face(sight, line)?.map(|face| {
+            let depth = -self.outside(face, line.origin) / sight.speed[face];
+            Hit {
+                depth,
+                point: line.at(depth),
+                normal: self.normals[face],
+                normal_length: self.normal_lengths[face],
+                face: Some(face as u8),
+            }
+        }))
+    }
+
+    /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it leaves lies ahead.
+    pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        for face in (0..4).filter(|&face| sight.crossing[face].is_gt()) {
+            if self.outside(face, ray.origin).sign()?.is_ge() {
+                return Ok(false);
+            }
+        }
+        Ok(self.entered_face(sight, ray)?.is_some())
+    }
+}
+
+/// The place in [`EDGES`] of the edge that faces i < j share.
+fn edge_of(i: usize, j: usize) -> usize {
+    match (i, j) {
+        (0, j) => j - 1,
+        (1, j) => j + 1,
+        _ => 5,
+    }
+}

@@ -1,0 +1,83 @@
+//! Vectors of abstract numbers: points, directions and colours of the formulas.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use glam::DVec3;
+
+use super::real::Real;
+
+/// Three numbers: a point, a direction or a colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vector<R> {
+    pub(crate) x: R,
+    pub(crate) y: R,
+    pub(crate) z: R,
+}
+
+impl<R: Real> Vector<R> {
+    pub(crate) fn new(x: R, y: R, z: R) -> Self {
+        Vector { x, y, z }
+    }
+
+    /// A vector of the scene, each component taken exactly.
+    pub(crate) fn exact(v: DVec3) -> Self {
+        Vector::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
+    }
+
+    pub(crate) fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    pub(crate) fn cross(self, other: Self) -> Self {
+        Vector::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+
+    pub(crate) fn squared_length(self) -> R {
+        self.dot(self)
+    }
+
+    pub(crate) fn length(self) -> R {
+        self.squared_length().sqrt()
+    }
+
+    /// Component by component, as light and colour multiply.
+    pub(crate) fn times(self, other: Self) -> Self {
+        Vector::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+
+    pub(crate) fn divided_by(self, divisor: R) -> Self {
+        Vector::new(self.x / divisor, self.y / divisor, self.z / divisor)
+    }
+}
+
+impl<R: Real> Add for Vector<R> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Vector::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<R: Real> Sub for Vector<R> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Vector::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+impl<R: Real> Neg for Vector<R> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Vector::new(-self.x, -self.y, -self.z)
+    }
+}
+
+impl<R: Real> Mul<R> for Vector<R> {
+    type Output = Self;
+    fn mul(self, factor: R) -> Self {
+        Vector::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}

@@ -1,0 +1,171 @@
+//! Promise: every stage shows what the picture's definition says, pixel by pixel.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test stops at the first surprise"
+)]
+
+mod plain;
+
+use firsthit::camera::{ROUND, frame_angle};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use plain::Plain;
+use rayon::prelude::*;
+
+/// Traces a frame and compares every pixel's decision and every sample with the plain evaluation.
+fn compare(scene: &Scene, stage: Stage, alpha: f64, size: u32) {
+    let mut image = Image::new(size).unwrap();
+    let mut tracer = Tracer::new(Kernel::Double, 0).unwrap();
+    let decisions = tracer
+        .trace_with_decisions(scene, stage, alpha, &mut image)
+        .unwrap();
+    let plain = Plain::new(scene, stage, alpha, size);
+    let wrong: Vec<String> = (0..size * size)
+        .into_par_iter()
+        .filter_map(|index| {
+            let (column, row) = (index % size, index / size);
+            let expected = plain.pixel(column, row);
+            let got = (decisions[index as usize], image.pixel(column, row).unwrap());
+            let same =
+                got.0 == expected.0 && got.1.map(f32::to_bits) == expected.1.map(f32::to_bits);
+            (!same).then(|| format!("({column}, {row}): {got:?} instead of {expected:?}"))
+        })
+        .collect();
+    assert!(
+        wrong.is_empty(),
+        "stage {stage}, α = {alpha}, N = {size}: {} pixels wrong, the first at {}",
+        wrong.len(),
+        wrong[0]
+    );
+}
+
+#[test]
+fn every_stage_at_full_size() {
+    for stage in Stage::ALL {
+        compare(&Scene::builtin(), stage, 0.0, 500);
+    }
+}
+
+#[test]
+fn every_stage_all_around() {
+    for frame in 0..ROUND {
+        for stage in Stage::ALL {
+            // Odd, even, and small: the round takes every size with every stage.
+            compare(
+                &Scene::builtin(),
+                stage,
+                frame_angle(frame),
+                [33, 40, 27][frame as usize % 3],
+            );
+        }
+    }
+}
+
+#[test]
+fn angles_of_any_size_and_sign() {
+    for alpha in [-0.75, 0.001, 1e22, -1.7e308] {
+        for stage in [Stage::Spheres, Stage::Tetrahedron, Stage::Animation] {
+            compare(&Scene::builtin(), stage, alpha, 32);
+        }
+    }
+}
+
+#[test]
+fn other_scenes() {
+    // Overlapping solids, a light from below the surface, solids below it, a vertex order of the other hand.
+    let scene = Scene::from_toml(
+        r#"
+        background = [0.1, 0.2, 0.3]
+        surface = { height = -0.25, half_width = 0.75, color = [0.4, 0.5, 0.6], reflectance = 0.75 }
+        light = { direction = [0.3, 1.0, -0.4], intensity = [1.0, 0.9, 0.8] }
+        material = { exponent = 7 }
+        [[sphere]]
+        center = [0.0, 0.0, 0.0]
+        radius = 0.375
+        color = [0.9, 0.9, 0.9]
+        [[sphere]]
+        center = [0.25, 0.125, 0.125]
+        radius = 0.25
+        color = [0.5, 0.1, 0.9]
+        [[sphere]]
+        center = [-0.5, -0.75, 0.25]
+        radius = 0.25
+        color = [0.1, 0.9, 0.2]
+        [[tetrahedron]]
+        vertices = [[0.5625, -0.125, 0.25], [0.125, -0.25, 0.5625], [0.125, -0.5, 0.0], [-0.28125, 0.5, 0.28125]]
+        color = [0.2, 0.45, 0.95]
+        "#,
+    )
+    .unwrap();
+    for alpha in [0.0, 0.5, 2.0, 4.0] {
+        for stage in Stage::ALL {
+            compare(&scene, stage, alpha, 41);
+        }
+    }
+    let empty = Scene::from_toml("").unwrap();
+    for stage in Stage::ALL {
+        compare(&empty, stage, 0.3, 8);
+    }
+}
+
+#[test]
+fn quadrants_pixel_by_pixel() {
+    for size in [500, 501, 7, 2, 1] {
+        let mut image = Image::new(size).unwrap();
+        Tracer::new(Kernel::Double, 1)
+            .unwrap()
+            .trace(&Scene::builtin(), Stage::Image, 0.0, &mut image)
+            .unwrap();
+        for row in 0..size {
+            for column in 0..size {
+                // Left and lower quadrants own the line through the middle, which only an even size has.
+                let (left, low) = (2 * column <= size, 2 * row <= size);
+                let expected = match (left, low) {
+                    (true, true) => [0.3f32, 0.3, 0.0],
+                    (true, false) => [0.0, 0.3, 0.3],
+                    (false, true) => [0.3, 0.0, 0.3],
+                    (false, false) => [0.0, 0.0, 0.0],
+                };
+                assert_eq!(
+                    image.pixel(column, row),
+                    Some(expected),
+                    "({column}, {row}) of {size}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let trace = |threads| {
+        let mut image = Image::new(101).unwrap();
+        Tracer::new(Kernel::Double, threads)
+            .unwrap()
+            .trace(&Scene::builtin(), Stage::Reflection, 0.9, &mut image)
+            .unwrap();
+        image
+            .samples()
+            .iter()
+            .map(|sample| sample.to_bits())
+            .collect::<Vec<_>>()
+    };
+    let alone = trace(1);
+    for threads in 2..=8 {
+        assert!(trace(threads) == alone, "{threads} threads");
+    }
+}
+
+#[test]
+fn an_angle_that_is_none_is_refused() {
+    let mut tracer = Tracer::new(Kernel::Double, 1).unwrap();
+    for alpha in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut image = Image::new(4).unwrap();
+        assert!(
+            tracer
+                .trace(&Scene::builtin(), Stage::Reflection, alpha, &mut image)
+                .is_err()
+        );
+        assert!(image.samples().iter().all(|&sample| sample == 0.0));
+    }
+}
