@@ -1,12 +1,13 @@
 //! What exists: solids, a surface, a light, one material.
 
+mod exact;
 mod file;
-mod orientation;
 
 use std::sync::LazyLock;
 
 use glam::DVec3;
 
+pub(crate) use exact::{Facts, Support};
 pub use file::{MAX_SOLIDS, SceneError};
 
 /// The built-in scene, as the TOML text that it is read from.
@@ -93,6 +94,7 @@ pub struct Scene {
     material: Material,
     spheres: Vec<Sphere>,
     tetrahedra: Vec<Tetrahedron>,
+    facts: Facts,
 }
 
 impl Scene {
@@ -162,5 +164,10 @@ impl Scene {
     /// The tetrahedra, in the file's order.
     pub fn tetrahedra(&self) -> &[Tetrahedron] {
         &self.tetrahedra
+    }
+
+    /// What exact arithmetic has decided about the scene.
+    pub(crate) fn facts(&self) -> &Facts {
+        &self.facts
     }
 }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::orientation::orientation;
+use super::exact::{Facts, orientation};
 use super::{Light, Material, Scene, Sphere, Surface, Tetrahedron};
 
 /// The most solids that a scene can have.
@@ -131,99 +131,125 @@ pub(super) fn read(text: &str, standard: Option<&Scene>) -> Result<Scene, SceneE
 }
 
 fn scene(file: File, standard: Option<&Scene>) -> Result<Scene, Refusal> {
-    let left_out = |field: &str| Refusal::new(0..0, format!("missing field `{field}`"));
-    let or_standard = |triple: Option<Triple>, value: Option<DVec3>, field: &str| match triple {
-        Some(triple) => amounts(triple),
-        None => value.ok_or_else(|| left_out(field)),
-    };
-    let light = standard.map(Scene::light);
-    let material = standard.map(Scene::material);
-    let (direction_given, exponent_given) = (file.light.direction, file.material.exponent);
-    let surface = file.surface.map(|table| {
-        let standard = standard.and_then(Scene::surface);
-        Ok(Surface {
-            height: coordinate(table.height)?,
-            half_width: length(table.half_width)?,
-            color: or_standard(table.color, standard.map(|s| s.color), "surface.color")?,
-            reflectance: match table.reflectance {
-                Some(number) => amount(number)?,
-                None => standard
-                    .map(|s| s.reflectance)
-                    .ok_or_else(|| left_out("surface.reflectance"))?,
-            },
-        })
-    });
-    let excess = file
+    let spans = file
         .sphere
         .iter()
         .map(Spanned::span)
-        .chain(file.tetrahedron.iter().map(Spanned::span))
-        .nth(MAX_SOLIDS);
-    if let Some(span) = excess {
-        let count = file.sphere.len() + file.tetrahedron.len();
-        return Err(Refusal::new(
-            span,
-            format!("{count} solids are too many: leave at most {MAX_SOLIDS}"),
-        ));
+        .chain(file.tetrahedron.iter().map(Spanned::span));
+    if let Some(excess) = spans.clone().nth(MAX_SOLIDS) {
+        let problem = format!(
+            "{} solids are too many: leave at most {MAX_SOLIDS}",
+            spans.count()
+        );
+        return Err(Refusal::new(excess, problem));
     }
+    let background = triple(
+        file.background,
+        standard.map(Scene::background),
+        "background",
+    )?;
+    let surface = file
+        .surface
+        .map(|table| surface(table, standard.and_then(Scene::surface)));
+    let light = light(file.light, standard.map(Scene::light))?;
+    let material = material(file.material, standard.map(Scene::material))?;
+    let spheres = file
+        .sphere
+        .into_iter()
+        .map(|table| sphere(table.into_inner()));
+    let tetrahedra = file
+        .tetrahedron
+        .into_iter()
+        .map(|table| tetrahedron(table.into_inner()));
+    let (surface, spheres) = (
+        surface.transpose()?,
+        spheres.collect::<Result<Vec<_>, _>>()?,
+    );
+    let tetrahedra = tetrahedra.collect::<Result<Vec<_>, _>>()?;
+    let facts = Facts::new(&spheres, &tetrahedra, surface.as_ref(), light.direction);
     Ok(Scene {
-        background: or_standard(
-            file.background,
-            standard.map(Scene::background),
-            "background",
+        background,
+        surface,
+        light,
+        material,
+        spheres,
+        tetrahedra,
+        facts,
+    })
+}
+
+/// What is read where a field is given, else the standard; the built-in scene itself has none and gives every field.
+fn or_standard<G, T>(
+    given: Option<G>,
+    read: fn(G) -> Result<T, Refusal>,
+    standard: Option<T>,
+    field: &str,
+) -> Result<T, Refusal> {
+    match given {
+        Some(given) => read(given),
+        None => standard.ok_or_else(|| Refusal::new(0..0, format!("missing field `{field}`"))),
+    }
+}
+
+fn triple(given: Option<Triple>, standard: Option<DVec3>, field: &str) -> Result<DVec3, Refusal> {
+    or_standard(given, amounts, standard, field)
+}
+
+fn surface(table: SurfaceTable, standard: Option<&Surface>) -> Result<Surface, Refusal> {
+    Ok(Surface {
+        height: coordinate(table.height)?,
+        half_width: length(table.half_width)?,
+        color: triple(table.color, standard.map(|surface| surface.color), "color")?,
+        reflectance: or_standard(
+            table.reflectance,
+            amount,
+            standard.map(|s| s.reflectance),
+            "reflectance",
         )?,
-        surface: surface.transpose()?,
-        light: Light {
-            direction: match direction_given {
-                Some(given) => direction(given)?,
-                None => light
-                    .map(|light| light.direction)
-                    .ok_or_else(|| left_out("light.direction"))?,
-            },
-            intensity: or_standard(
-                file.light.intensity,
-                light.map(|l| l.intensity),
-                "light.intensity",
-            )?,
-            ambient_intensity: or_standard(
-                file.light.ambient_intensity,
-                light.map(|l| l.ambient_intensity),
-                "light.ambient_intensity",
-            )?,
-        },
-        material: Material {
-            ambient: or_standard(
-                file.material.ambient,
-                material.map(|m| m.ambient),
-                "material.ambient",
-            )?,
-            diffuse: or_standard(
-                file.material.diffuse,
-                material.map(|m| m.diffuse),
-                "material.diffuse",
-            )?,
-            specular: or_standard(
-                file.material.specular,
-                material.map(|m| m.specular),
-                "material.specular",
-            )?,
-            exponent: match exponent_given {
-                Some(given) => exponent(given)?,
-                None => material
-                    .map(|m| m.exponent)
-                    .ok_or_else(|| left_out("material.exponent"))?,
-            },
-        },
-        spheres: file
-            .sphere
-            .into_iter()
-            .map(|table| sphere(table.into_inner()))
-            .collect::<Result<_, _>>()?,
-        tetrahedra: file
-            .tetrahedron
-            .into_iter()
-            .map(|t| tetrahedron(t.into_inner()))
-            .collect::<Result<_, _>>()?,
+    })
+}
+
+fn light(table: LightTable, standard: Option<&Light>) -> Result<Light, Refusal> {
+    let ambient = standard.map(|light| light.ambient_intensity);
+    Ok(Light {
+        direction: or_standard(
+            table.direction,
+            direction,
+            standard.map(|l| l.direction),
+            "direction",
+        )?,
+        intensity: triple(
+            table.intensity,
+            standard.map(|light| light.intensity),
+            "intensity",
+        )?,
+        ambient_intensity: triple(table.ambient_intensity, ambient, "ambient_intensity")?,
+    })
+}
+
+fn material(table: MaterialTable, standard: Option<&Material>) -> Result<Material, Refusal> {
+    Ok(Material {
+        ambient: triple(
+            table.ambient,
+            standard.map(|material| material.ambient),
+            "ambient",
+        )?,
+        diffuse: triple(
+            table.diffuse,
+            standard.map(|material| material.diffuse),
+            "diffuse",
+        )?,
+        specular: triple(
+            table.specular,
+            standard.map(|material| material.specular),
+            "specular",
+        )?,
+        exponent: or_standard(
+            table.exponent,
+            exponent,
+            standard.map(|m| m.exponent),
+            "exponent",
+        )?,
     })
 }
 

@@ -1,13 +1,18 @@
 //! Lines and rays: what an eye, a mirror or a shadow looks along.
 
+use std::cmp::Ordering;
+
 use super::real::Real;
 use super::vector::Vector;
+use crate::scene::Support;
 
 /// The points `origin` + t · `direction`; a ray where only t > 0 counts.
 #[derive(Clone, Copy)]
 pub(super) struct Line<R> {
     pub(super) origin: Vector<R>,
     pub(super) direction: Direction<R>,
+    /// The sphere or plane that the origin lies on, for a ray that starts at one. It leaves it outward.
+    pub(super) leaves: Option<Support>,
 }
 
 /// The way a line goes, of any length, with what every intersection along it shares.
@@ -36,4 +41,8 @@ pub(super) struct Hit<R> {
     pub(super) normal_length: R,
     /// The face it enters, for a tetrahedron.
     pub(super) face: Option<u8>,
+    /// The sphere or plane that the point lies on.
+    pub(super) support: Support,
+    /// The sign of n·l, for a face: decided where the scene was read.
+    pub(super) facing_light: Option<Ordering>,
 }

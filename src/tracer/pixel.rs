@@ -51,33 +51,38 @@ impl<'a, R: Real> Picture<'a, R> {
             cos,
             scale: R::exact(3.0) * half,
         };
-        let floor = match scene.surface().filter(|_| stage >= Stage::Shadow) {
-            None => None,
-            Some(described) => {
-                let surface = frame.surface(described);
-                let mirror = if stage >= Stage::Reflection {
-                    let view = View::new(scene, &frame, Some(surface.height))?;
+        let view = |mirror| {
+            let indices = 0..scene.tetrahedra().len();
+            let crossings = indices.map(|index| frame.crossing(scene, index, mirror));
+            View::new(
+                scene,
+                &frame,
+                mirror,
+                &crossings.collect::<Result<Vec<_>, _>>()?,
+            )
+        };
+        let floor = match (scene.surface(), frame.surface(scene)) {
+            (Some(described), Some(surface)) if stage >= Stage::Shadow => Some(Floor {
+                mirror: if stage >= Stage::Reflection {
+                    let reflectance = R::exact(described.reflectance);
                     Some(Mirror {
-                        view,
-                        reflectance: R::exact(described.reflectance),
+                        view: view(Some(surface.height))?,
+                        reflectance,
                     })
                 } else {
                     None
-                };
-                let height_in_pixels = R::exact(described.height) * half;
-                Some(Floor {
-                    surface,
-                    color: Vector::exact(described.color),
-                    height_in_pixels,
-                    mirror,
-                })
-            }
+                },
+                surface,
+                color: Vector::exact(described.color),
+                height_in_pixels: R::exact(described.height) * half,
+            }),
+            _ => None,
         };
         Ok(Picture {
             scene,
             stage,
             size,
-            view: View::new(scene, &frame, None)?,
+            view: view(None)?,
             floor,
         })
     }
@@ -109,6 +114,7 @@ impl<'a, R: Real> Picture<'a, R> {
         Line {
             origin: Vector::new(origin[0], origin[1], origin[2]),
             direction: looking(),
+            leaves: None,
         }
     }
 
@@ -160,10 +166,15 @@ impl<'a, R: Real> Picture<'a, R> {
                 R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
             let hides = match &hit {
                 // Of a solid and the surface at the same depth, the solid is seen.
+                Some((_, hit)) if hit.support == floor.surface.support => false,
                 Some((_, hit)) => (hit.depth - depth).sign()?.is_gt(),
                 None => true,
             };
-            let point = ray.at(depth);
+            // Its height is known without any rounding.
+            let point = Vector {
+                y: floor.surface.height,
+                ..ray.at(depth)
+            };
             if hides && floor.surface.contains(point)? {
                 return self.surface_at(floor, point);
             }
@@ -183,7 +194,11 @@ impl<'a, R: Real> Picture<'a, R> {
         floor: &Floor<R>,
         point: Vector<R>,
     ) -> Result<(Decision, Vector<R>), R::Doubt> {
-        if self.view.is_shadowed(point, None)? {
+        let leaves = floor.surface.support;
+        if self
+            .view
+            .is_shadowed(&self.view.ray_to_light(point, leaves))?
+        {
             return Ok((Decision::SurfaceInShadow, self.view.shading.ambient()));
         }
         if let Some(mirror) = &floor.mirror {
@@ -191,6 +206,7 @@ impl<'a, R: Real> Picture<'a, R> {
             let ray = Line {
                 origin: point,
                 direction: looking(),
+                leaves: Some(leaves),
             };
             if let Some((solid, hit)) = mirror.view.first_hit(&ray, Reach::Ahead, Solids::All)? {
                 let (in_shadow, color) = self.solid(&mirror.view, solid, &hit)?;
@@ -210,10 +226,11 @@ impl<'a, R: Real> Picture<'a, R> {
         solid: usize,
         hit: &Hit<R>,
     ) -> Result<(bool, Vector<R>), R::Doubt> {
-        let in_shadow = hit.normal.dot(view.shading.to_light.vector).sign()?.is_le()
-            || view.is_shadowed(hit.point, Some(solid))?
+        let ray = view.ray_to_light(hit.point, hit.support);
+        let in_shadow = view.facing_light(hit)?.is_le()
+            || view.is_shadowed(&ray)?
             || match &self.floor {
-                Some(floor) => floor.surface.is_ahead(&view.ray_to_light(hit.point))?,
+                Some(floor) => floor.surface.is_ahead(&ray)?,
                 None => false,
             };
         let light = if in_shadow {

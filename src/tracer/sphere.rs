@@ -5,11 +5,13 @@ use std::cmp::Ordering;
 use super::line::{Hit, Line};
 use super::real::Real;
 use super::vector::Vector;
+use crate::scene::Support;
 
 /// A sphere in view space.
 pub(super) struct Sphere<R> {
     pub(super) center: Vector<R>,
     pub(super) radius: R,
+    pub(super) support: Support,
 }
 
 impl<R: Real> Sphere<R> {
@@ -42,12 +44,17 @@ impl<R: Real> Sphere<R> {
             normal,
             normal_length: self.radius,
             face: None,
+            support: self.support,
+            facing_light: None,
         }))
     }
 
     /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line meets it, and the ray
     /// moves toward the centre.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        if ray.leaves == Some(self.support) {
+            return Ok(false);
+        }
         let approach = (self.center - ray.origin).dot(ray.direction.vector);
         Ok(approach.sign()? == Ordering::Greater
             && self.discriminant(ray, self.moment(ray)).sign()?.is_ge())

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::line::Line;
 use super::real::Real;
 use super::vector::Vector;
+use crate::scene::Support;
 
 /// The square in view space: turned about y with the view, but always level.
 pub(super) struct Surface<R> {
@@ -12,6 +13,7 @@ pub(super) struct Surface<R> {
     pub(super) half_width: R,
     pub(super) sin: R,
     pub(super) cos: R,
+    pub(super) support: Support,
 }
 
 impl<R: Real> Surface<R> {
@@ -42,7 +44,12 @@ impl<R: Real> Surface<R> {
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         let climb = ray.direction.vector.y;
         let rise = self.height - ray.origin.y;
-        match (climb.sign()?, rise.sign()?) {
+        let toward = if ray.leaves == Some(self.support) {
+            Ordering::Equal
+        } else {
+            rise.sign()?
+        };
+        match (climb.sign()?, toward) {
             (Ordering::Equal, Ordering::Equal) => self.is_ahead_in_plane(ray),
             (Ordering::Equal, _) | (_, Ordering::Equal) => Ok(false),
             (up, toward) if up == toward => {

@@ -12,6 +12,7 @@ use std::cmp::Ordering;
 use super::line::{Direction, Hit, Line};
 use super::real::Real;
 use super::vector::Vector;
+use crate::scene::Support;
 
 /// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from outside, for a tetrahedron
 /// whose edges 0→1, 0→2, 0→3 are right-handed.
@@ -34,6 +35,10 @@ pub(super) struct Tetrahedron<R> {
     normals: [Vector<R>; 4],
     normal_lengths: [R; 4],
     right_handed: bool,
+    /// The plane of each face.
+    supports: [Support; 4],
+    /// The sign of n·l for each face.
+    facing_light: [Ordering; 4],
 }
 
 /// A tetrahedron as lines of one direction meet it.
@@ -47,41 +52,67 @@ pub(super) struct Sight<R> {
 }
 
 impl<R: Real> Tetrahedron<R> {
-    /// `right_handed`: whether the edges 0→1, 0→2, 0→3 are, which is decided exactly where the scene is read.
-    pub(super) fn new(vertices: [Vector<R>; 4], right_handed: bool) -> Self {
+    /// `right_handed` (the edges 0→1, 0→2, 0→3 are), `supports` and `facing_light` are decided where the scene is read.
+    pub(super) fn new(
+        vertices: [Vector<R>; 4],
+        right_handed: bool,
+        supports: [Support; 4],
+        facing_light: [Ordering; 4],
+    ) -> Self {
         let normals = FACES.map(|[a, b, c]| {
             let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
             if right_handed { normal } else { -normal }
         });
+        let normal_lengths = normals.map(Vector::length);
         Tetrahedron {
             vertices,
             normals,
-            normal_lengths: normals.map(Vector::length),
+            normal_lengths,
             right_handed,
+            supports,
+            facing_light,
         }
     }
 
-    /// What all lines of one direction share.
-    pub(super) fn sight(&self, direction: &Direction<R>) -> Result<Sight<R>, R::Doubt> {
+    /// The sign of n·d for each face.
+    pub(super) fn crossing(&self, direction: &Direction<R>) -> Result<[Ordering; 4], R::Doubt> {
+        let mut crossing = [Ordering::Equal; 4];
+        for (sign, normal) in crossing.iter_mut().zip(self.normals) {
+            *sign = normal.dot(direction.vector).sign()?;
+        }
+        Ok(crossing)
+    }
+
+    /// What all lines of one direction share. `crossing` is that of [`Tetrahedron::crossing`].
+    pub(super) fn sight(&self, direction: &Direction<R>, crossing: [Ordering; 4]) -> Sight<R> {
         let speed = self.normals.map(|normal| normal.dot(direction.vector));
         let moments = EDGES.map(|(_, _, [from, to])| {
             let moment = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
             if self.right_handed { moment } else { -moment }
         });
-        let mut crossing = [Ordering::Equal; 4];
-        for (sign, speed) in crossing.iter_mut().zip(speed) {
-            *sign = speed.sign()?;
-        }
-        Ok(Sight {
+        Sight {
             crossing,
             speed,
             moments,
-        })
+        }
+    }
+
+    /// What all lines toward the light share.
+    pub(super) fn sight_of_light(&self, to_light: &Direction<R>) -> Sight<R> {
+        self.sight(to_light, self.facing_light)
     }
 
     /// f of a face: positive where `point` is outside of it, in units of the normal's length.
     fn outside(&self, face: usize, point: Vector<R>) -> R {
         self.normals[face].dot(point - self.vertices[FACES[face][0]])
+    }
+
+    /// The sign of f at the origin of a ray, which is 0 where the ray leaves the face's own plane.
+    fn origin_outside(&self, face: usize, ray: &Line<R>) -> Result<Ordering, R::Doubt> {
+        match ray.leaves {
+            Some(plane) if plane == self.supports[face] => Ok(Ordering::Equal),
+            _ => self.outside(face, ray.origin).sign(),
+        }
     }
 
     /// The edge function of `EDGES[edge]`, for its faces i < j. Where the line enters i and leaves j it is not negative
@@ -95,7 +126,7 @@ impl<R: Real> Tetrahedron<R> {
     /// The face where the whole line first meets the solid; touching counts.
     fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<Option<usize>, R::Doubt> {
         for face in 0..4 {
-            if sight.crossing[face].is_eq() && self.outside(face, line.origin).sign()?.is_gt() {
+            if sight.crossing[face].is_eq() && self.origin_outside(face, line)?.is_gt() {
                 return Ok(None);
             }
         }
@@ -137,6 +168,8 @@ impl<R: Real> Tetrahedron<R> {
                 normal: self.normals[face],
                 normal_length: self.normal_lengths[face],
                 face: Some(face as u8),
+                support: self.supports[face],
+                facing_light: Some(self.facing_light[face]),
             }
         }))
     }
@@ -144,7 +177,7 @@ impl<R: Real> Tetrahedron<R> {
     /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it leaves lies ahead.
     pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
         for face in (0..4).filter(|&face| sight.crossing[face].is_gt()) {
-            if self.outside(face, ray.origin).sign()?.is_ge() {
+            if self.origin_outside(face, ray)?.is_ge() {
                 return Ok(false);
             }
         }

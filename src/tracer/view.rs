@@ -14,6 +14,8 @@
 //! surface's plane. So the mirror is a second view of the same kind, of reflected solids under a reflected light, and
 //! every formula serves both.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use super::line::{Direction, Hit, Line};
@@ -23,7 +25,7 @@ use super::sphere::Sphere;
 use super::surface::Surface;
 use super::tetrahedron::{Sight, Tetrahedron};
 use super::vector::Vector;
-use crate::scene::Scene;
+use crate::scene::{Scene, Support};
 
 /// How the scene is turned and scaled into view space.
 #[derive(Clone, Copy)]
@@ -49,13 +51,49 @@ impl<R: Real> Frame<R> {
     }
 
     /// The surface in view space.
-    pub(super) fn surface(&self, surface: &crate::scene::Surface) -> Surface<R> {
-        Surface {
+    pub(super) fn surface(&self, scene: &Scene) -> Option<Surface<R>> {
+        let surface = scene.surface()?;
+        Some(Surface {
             height: R::exact(surface.height) * self.scale,
             half_width: R::exact(surface.half_width) * self.scale,
             sin: self.sin,
             cos: self.cos,
-        }
+            support: scene.facts().surface?,
+        })
+    }
+
+    /// A tetrahedron in view space, reflected in the plane of height `mirror`.
+    fn tetrahedron(&self, scene: &Scene, index: usize, mirror: Option<R>) -> Tetrahedron<R> {
+        let (tetrahedron, facts) = (&scene.tetrahedra()[index], scene.facts());
+        let vertices = tetrahedron
+            .vertices
+            .map(|vertex| reflect(self.place(vertex), mirror));
+        // A reflection turns a right hand into a left one.
+        let right_handed = tetrahedron.right_handed != mirror.is_some();
+        Tetrahedron::new(
+            vertices,
+            right_handed,
+            facts.faces[index],
+            facts.facing_light[index],
+        )
+    }
+
+    /// For each tetrahedron, the sign of n·d for each face and the eye's direction d.
+    pub(super) fn crossing(
+        &self,
+        scene: &Scene,
+        index: usize,
+        mirror: Option<R>,
+    ) -> Result<[Ordering; 4], R::Doubt> {
+        self.tetrahedron(scene, index, mirror).crossing(&looking())
+    }
+}
+
+/// The reflection in the horizontal plane of height `mirror`, if there is one.
+fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
+    match mirror {
+        Some(height) => Vector::new(point.x, height + height - point.y, point.z),
+        None => point,
     }
 }
 
@@ -97,16 +135,14 @@ pub(super) enum Solids {
 }
 
 impl<R: Real> View<R> {
-    /// `mirror`: the height in view space of the plane in which everything is reflected.
+    /// `mirror`: the height in view space of the plane in which everything is reflected. `crossings`: what
+    /// [`Frame::crossing`] says of each tetrahedron.
     pub(super) fn new(
         scene: &Scene,
         frame: &Frame<R>,
         mirror: Option<R>,
+        crossings: &[[Ordering; 4]],
     ) -> Result<View<R>, R::Doubt> {
-        let reflect_point = |p: Vector<R>| match mirror {
-            Some(height) => Vector::new(p.x, height + height - p.y, p.z),
-            None => p,
-        };
         let light = -frame.turn(scene.light().scaled_direction());
         let light = if mirror.is_some() {
             Vector::new(light.x, -light.y, light.z)
@@ -117,26 +153,29 @@ impl<R: Real> View<R> {
             vector: light,
             squared_length: light.squared_length(),
         };
-        let spheres = scene.spheres().iter().map(|sphere| Sphere {
-            center: reflect_point(frame.place(sphere.center)),
-            radius: R::exact(sphere.radius) * frame.scale,
-        });
-        let tetrahedra = scene.tetrahedra().iter().map(|tetrahedron| {
-            let vertices = tetrahedron
-                .vertices
-                .map(|vertex| reflect_point(frame.place(vertex)));
-            // A reflection turns a right hand into a left one.
-            let solid = Tetrahedron::new(vertices, tetrahedron.right_handed != mirror.is_some());
-            let (from_eye, from_light) = (solid.sight(&looking())?, solid.sight(&to_light)?);
-            Ok(TetrahedronInView {
+        let spheres =
+            scene
+                .spheres()
+                .iter()
+                .zip(&scene.facts().spheres)
+                .map(|(sphere, &support)| Sphere {
+                    center: reflect(frame.place(sphere.center), mirror),
+                    radius: R::exact(sphere.radius) * frame.scale,
+                    support,
+                });
+        let tetrahedra = crossings.iter().enumerate().map(|(index, &crossing)| {
+            let solid = frame.tetrahedron(scene, index, mirror);
+            let from_eye = solid.sight(&looking(), crossing);
+            let from_light = solid.sight_of_light(&to_light);
+            TetrahedronInView {
                 solid,
                 from_eye,
                 from_light,
-            })
+            }
         });
         Ok(View {
             spheres: spheres.collect(),
-            tetrahedra: tetrahedra.collect::<Result<_, _>>()?,
+            tetrahedra: tetrahedra.collect(),
             shading: Shading::new(scene, &looking(), to_light)?,
         })
     }
@@ -152,6 +191,7 @@ impl<R: Real> View<R> {
         let mut meet = |solid: usize, hit: Option<Hit<R>>| -> Result<(), R::Doubt> {
             if let Some(hit) = hit {
                 let nearer = match &first {
+                    Some((_, other)) if other.support == hit.support => false,
                     Some((_, other)) => (hit.depth - other.depth).sign()?.is_lt(),
                     None => true,
                 };
@@ -178,31 +218,35 @@ impl<R: Real> View<R> {
         Ok(first)
     }
 
-    /// Whether a solid other than `besides` stands between `point` and the light. The point is in no solid's interior.
-    pub(super) fn is_shadowed(
-        &self,
-        point: Vector<R>,
-        besides: Option<usize>,
-    ) -> Result<bool, R::Doubt> {
-        let ray = self.ray_to_light(point);
-        for (solid, sphere) in self.spheres.iter().enumerate() {
-            if Some(solid) != besides && sphere.is_ahead(&ray)? {
+    /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the light.
+    pub(super) fn is_shadowed(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        for sphere in &self.spheres {
+            if sphere.is_ahead(ray)? {
                 return Ok(true);
             }
         }
-        for (solid, t) in (self.spheres.len()..).zip(&self.tetrahedra) {
-            if Some(solid) != besides && t.solid.is_ahead(&t.from_light, &ray)? {
+        for tetrahedron in &self.tetrahedra {
+            if tetrahedron.solid.is_ahead(&tetrahedron.from_light, ray)? {
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    /// The ray from `point` toward the light.
-    pub(super) fn ray_to_light(&self, point: Vector<R>) -> Line<R> {
+    /// The ray toward the light from a point of a sphere or plane, outward.
+    pub(super) fn ray_to_light(&self, origin: Vector<R>, leaves: Support) -> Line<R> {
         Line {
-            origin: point,
+            origin,
             direction: self.shading.to_light,
+            leaves: Some(leaves),
+        }
+    }
+
+    /// The sign of n·l where a solid is hit.
+    pub(super) fn facing_light(&self, hit: &Hit<R>) -> Result<Ordering, R::Doubt> {
+        match hit.facing_light {
+            Some(decided) => Ok(decided),
+            None => hit.normal.dot(self.shading.to_light.vector).sign(),
         }
     }
 }

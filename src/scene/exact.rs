@@ -1,0 +1,272 @@
+//! What exact rational arithmetic decides about a scene, once, where it is read.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use dashu_base::Sign;
+use dashu_ratio::{RBig, Relaxed};
+use glam::DVec3;
+
+use super::{Sphere, Surface, Tetrahedron};
+
+type Rational = [Relaxed; 3];
+
+/// The vector of these f64s, taken exactly; one that is not finite counts as 0.
+fn exact(v: DVec3) -> Rational {
+    v.to_array()
+        .map(|x| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO))
+}
+
+fn minus(a: &Rational, b: &Rational) -> Rational {
+    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
+}
+
+fn cross(a: &Rational, b: &Rational) -> Rational {
+    [
+        &a[1] * &b[2] - &a[2] * &b[1],
+        &a[2] * &b[0] - &a[0] * &b[2],
+        &a[0] * &b[1] - &a[1] * &b[0],
+    ]
+}
+
+fn dot(a: &Rational, b: &Rational) -> Relaxed {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn sign(x: &Relaxed) -> Ordering {
+    match x.sign() {
+        _ if *x == Relaxed::ZERO => Ordering::Equal,
+        Sign::Positive => Ordering::Greater,
+        Sign::Negative => Ordering::Less,
+    }
+}
+
+/// The sign of six times the signed volume, (b − a) · ((c − a) × (d − a)): equal where the four points lie in one plane.
+pub(super) fn orientation(vertices: [DVec3; 4]) -> Ordering {
+    let [a, b, c, d] = vertices.map(exact);
+    sign(&dot(&minus(&b, &a), &cross(&minus(&c, &a), &minus(&d, &a))))
+}
+
+/// A sphere or a plane that points of solids or of the surface lie on: the same number where it is the same.
+///
+/// Two faces in one plane, a solid listed twice, a base that lies in the surface: such a tie covers an area of the picture,
+/// and at most angles no number of digits would ever show that it is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Support(u32);
+
+/// Everything about a scene that is decided here.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Facts {
+    /// Each sphere's own surface.
+    pub(crate) spheres: Vec<Support>,
+    /// The plane of each face of each tetrahedron.
+    pub(crate) faces: Vec<[Support; 4]>,
+    /// The plane of the surface.
+    pub(crate) surface: Option<Support>,
+    /// The sign of n·l for each face: a number that no turning of the scene changes.
+    pub(crate) facing_light: Vec<[Ordering; 4]>,
+}
+
+impl Facts {
+    /// `direction` is the way the light travels.
+    pub(super) fn new(
+        spheres: &[Sphere],
+        tetrahedra: &[Tetrahedron],
+        surface: Option<&Surface>,
+        direction: DVec3,
+    ) -> Facts {
+        let mut count = 0;
+        let mut number = || {
+            count += 1;
+            Support(count)
+        };
+        let mut same_spheres = HashMap::new();
+        let spheres = spheres.iter().map(|sphere| {
+            let key = [
+                sphere.center.x,
+                sphere.center.y,
+                sphere.center.z,
+                sphere.radius,
+            ]
+            .map(f64::to_bits);
+            *same_spheres.entry(key).or_insert_with(&mut number)
+        });
+        let spheres = spheres.collect();
+
+        let to_light = exact(-direction);
+        let mut same_planes = HashMap::new();
+        let mut support = |plane| *same_planes.entry(plane).or_insert_with(&mut number);
+        let (mut faces, mut facing_light) = (Vec::new(), Vec::new());
+        for tetrahedron in tetrahedra {
+            let vertices = tetrahedron.vertices.map(exact);
+            let planes = [0, 1, 2, 3].map(|k| Plane::of_face(&vertices, k));
+            facing_light.push(
+                planes
+                    .each_ref()
+                    .map(|plane| sign(&dot(&plane.normal, &to_light))),
+            );
+            faces.push(planes.map(|plane| support(plane.coefficients())));
+        }
+        let surface = surface.map(|surface| {
+            let height = exact(DVec3::Y * surface.height);
+            let up = exact(DVec3::Y);
+            support(
+                Plane {
+                    offset: dot(&up, &height),
+                    normal: up,
+                }
+                .coefficients(),
+            )
+        });
+        Facts {
+            spheres,
+            faces,
+            surface,
+            facing_light,
+        }
+    }
+}
+
+/// The points x with normal · x = offset.
+struct Plane {
+    normal: Rational,
+    offset: Relaxed,
+}
+
+impl Plane {
+    /// The plane of face `k`, its normal outward.
+    fn of_face(vertices: &[Rational; 4], k: usize) -> Plane {
+        let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &vertices[i]);
+        let normal = cross(&minus(b, a), &minus(c, a));
+        let outward = sign(&dot(&normal, &minus(&vertices[k], a))).is_lt();
+        let normal = if outward { normal } else { normal.map(|x| -x) };
+        Plane {
+            offset: dot(&normal, a),
+            normal,
+        }
+    }
+
+    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the same plane.
+    fn coefficients(self) -> [RBig; 4] {
+        let [x, y, z] = self.normal.map(Relaxed::canonicalize);
+        let all = [x, y, z, self.offset.canonicalize()];
+        match all
+            .iter()
+            .find(|coefficient| **coefficient != RBig::ZERO)
+            .cloned()
+        {
+            Some(first) => all.map(|coefficient| coefficient / &first),
+            None => all,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ulp_decides() {
+        let flat = [
+            DVec3::ZERO,
+            DVec3::new(1.0, 0.0, 1.0),
+            DVec3::new(0.0, 1.0, 1.0),
+            DVec3::new(1.0, 1.0, 2.0),
+        ];
+        assert_eq!(orientation(flat), Ordering::Equal);
+        for (z, expected) in [
+            (2f64.next_up(), Ordering::Greater),
+            (2f64.next_down(), Ordering::Less),
+        ] {
+            let mut nearly = flat;
+            nearly[3].z = z;
+            assert_eq!(orientation(nearly), expected);
+        }
+    }
+
+    #[test]
+    fn no_size_is_too_small_or_too_far() {
+        let tiny = [
+            DVec3::ZERO,
+            DVec3::X * 1e-30,
+            DVec3::Y * 1e-30,
+            DVec3::Z * 1e-30,
+        ];
+        assert_eq!(orientation(tiny), Ordering::Greater);
+        // In f64, 1e6 + 1e-30 is 1e6; the tetrahedron is given by what its numbers are, which is flat.
+        let far = tiny.map(|p| p + 1e6);
+        assert_eq!(orientation(far), Ordering::Equal);
+        // Coordinates of both magnitudes: a volume of 1e-30 · 1e6 · 1e6.
+        let long = [
+            DVec3::ZERO,
+            DVec3::X * 1e-30,
+            DVec3::Y * 1e6,
+            DVec3::Z * -1e6,
+        ];
+        assert_eq!(orientation(long), Ordering::Less);
+    }
+
+    fn facts(tetrahedra: [[DVec3; 4]; 2]) -> Facts {
+        let solids = tetrahedra.map(|vertices| Tetrahedron {
+            vertices,
+            color: DVec3::ONE,
+            right_handed: orientation(vertices).is_gt(),
+        });
+        let surface = Surface {
+            height: -0.5,
+            half_width: 1.0,
+            color: DVec3::ONE,
+            reflectance: 0.5,
+        };
+        Facts::new(&[], &solids, Some(&surface), DVec3::new(0.0, -1.0, 0.0))
+    }
+
+    #[test]
+    fn faces_in_one_plane_share_a_support() {
+        let v = DVec3::new;
+        // Both rest on y = −1/2, the first with face 3, the second with face 0.
+        let first = [
+            v(0.1, -0.5, 0.3),
+            v(0.7, -0.5, 0.2),
+            v(0.4, -0.5, 0.9),
+            v(0.3, 0.3, 0.3),
+        ];
+        let second = [
+            v(0.2, 0.9, 0.1),
+            v(-0.3, -0.5, 0.7),
+            v(-0.9, -0.5, 0.2),
+            v(-0.1, -0.5, -0.3),
+        ];
+        let facts = facts([first, second]);
+        assert_eq!(Some(facts.faces[0][3]), facts.surface);
+        assert_eq!(Some(facts.faces[1][0]), facts.surface);
+        assert_ne!(facts.faces[0][0], facts.faces[0][1]);
+        // The light comes straight from above: the bases are turned away from it, whatever their winding.
+        assert_eq!(
+            (facts.facing_light[0][3], facts.facing_light[1][0]),
+            (Ordering::Less, Ordering::Less)
+        );
+    }
+
+    #[test]
+    fn an_ulp_parts_two_planes() {
+        let v = DVec3::new;
+        let first = [
+            v(0.0, 0.0, 0.0),
+            v(1.0, 0.0, 1.0),
+            v(0.0, 1.0, 1.0),
+            v(0.0, 0.0, 9.0),
+        ];
+        let mut second = [
+            v(2.0, 3.0, 5.0),
+            v(-1.0, 0.0, -1.0),
+            v(7.0, 0.0, 7.0),
+            v(0.0, 0.0, -9.0),
+        ];
+        let shared = facts([first, second]);
+        assert_eq!(shared.faces[0][3], shared.faces[1][3]);
+        second[0].z = 5f64.next_up();
+        let parted = facts([first, second]);
+        assert_ne!(parted.faces[0][3], parted.faces[1][3]);
+    }
+}
