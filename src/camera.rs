@@ -1,7 +1,7 @@
 //! The angle α: its frames, its sine and its cosine.
 
+use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use dashu_float::{Context, FBig};
 
 /// The frames of a round of the animation: the document adds 0.3 until α > 6.28.
 pub const ROUND: u64 = 21;
@@ -26,19 +26,38 @@ pub fn frame_angle(k: u64) -> f64 {
 pub fn sin_cos(alpha: f64) -> (f64, f64) {
     // α − α³/6 < sin α < α and 1 − α²/2 < cos α < 1: below 2^-27 both lie within a quarter of an ulp of α and of 1, also
     // where α is subnormal and a result of 53 bits would have to be rounded a second time.
+    if !alpha.is_finite() {
+        return (f64::NAN, f64::NAN);
+    }
     if alpha.abs() < f64::from_bits(0x3e40_0000_0000_0000) {
         return (alpha, 1.0);
     }
-    let Ok(exact) = FBig::<HalfEven, 2>::try_from(alpha) else {
-        return (f64::NAN, f64::NAN);
-    };
-    let (sin, cos) =
-        Context::<HalfEven>::new(f64::MANTISSA_DIGITS as usize).sin_cos(exact.repr(), None);
     // No sine or cosine of a larger f64 is smaller than 2^-62: none is subnormal, and 53 bits are an f64.
-    let rounded = |value: dashu_float::FpResult<FBig<HalfEven, 2>>| {
-        value.map_or(f64::NAN, |v| v.value().to_f64().value())
-    };
-    (rounded(sin), rounded(cos))
+    let [sin, cos] = sin_cos_with(alpha, f64::MANTISSA_DIGITS as usize);
+    (sin.to_f64().value(), cos.to_f64().value())
+}
+
+/// How far the sums of [`sin_cos_in_two`] can be from the truth, relative to their first parts: half an ulp of the second part is
+/// at most 2^-106 of the first, and 120 bits add 2^-120.
+pub(crate) const IN_TWO_ERROR: f64 = f64::EPSILON * f64::EPSILON / 2.0;
+
+/// The sine and the cosine of the f64 `alpha`, each as a sum of two f64s, the first the nearest to the whole; of 0 for an angle
+/// that is not finite. A second part below 2^-1074 is lost.
+pub(crate) fn sin_cos_in_two(alpha: f64) -> [(f64, f64); 2] {
+    sin_cos_with(alpha, 120).map(|whole| {
+        let high = whole.to_f64().value();
+        let rest = FBig::try_from(high).map_or(f64::NAN, |high| (whole - high).to_f64().value());
+        (high, rest)
+    })
+}
+
+/// Sine and cosine rounded to `bits`; 0 for an angle that is not finite.
+fn sin_cos_with(alpha: f64, bits: usize) -> [FBig<HalfEven>; 2] {
+    let angle = FBig::<HalfEven>::try_from(alpha)
+        .unwrap_or(FBig::ZERO)
+        .with_precision(bits)
+        .value();
+    angle.sin_cos().into()
 }
 
 #[cfg(test)]

@@ -4,9 +4,10 @@
 //! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number.
 
 mod decision;
+mod ladder;
 mod line;
+mod number;
 mod pixel;
-mod real;
 mod shading;
 mod sphere;
 mod surface;
@@ -14,30 +15,46 @@ mod tetrahedron;
 mod vector;
 mod view;
 
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use crate::camera::sin_cos;
 use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
-use pixel::Picture;
+use ladder::{Ladder, Pixels, Plain, Rung};
 
 /// How numbers are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Kernel {
-    /// f64 through and through, rounded to f32 once at the end.
+    /// Every decision as in exact arithmetic, every sample the true value correctly rounded.
     #[default]
+    Exact,
+    /// f32 through and through: careful formulas, no bounds, no safety net.
+    Fast,
+    /// f64 through and through, rounded to f32 once at the end.
     Double,
+    /// What errors are measured against: as exact, but with no f64 on the way.
+    Reference,
 }
 
 impl Kernel {
     /// Every kernel.
-    pub const ALL: [Kernel; 1] = [Kernel::Double];
+    pub const ALL: [Kernel; 4] = [
+        Kernel::Exact,
+        Kernel::Fast,
+        Kernel::Double,
+        Kernel::Reference,
+    ];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Kernel::Exact => "exact",
+            Kernel::Fast => "fast",
             Kernel::Double => "double",
+            Kernel::Reference => "reference",
         }
     }
 }
@@ -58,10 +75,20 @@ pub enum TraceError {
     },
 }
 
+/// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InDoubt {
+    /// Settled by double-doubles only.
+    pub double_double: u64,
+    /// Settled by arbitrary precision only.
+    pub arbitrary: u64,
+}
+
 /// Traces pictures: made once, used for any number of frames.
 pub struct Tracer {
     kernel: Kernel,
     pool: ThreadPool,
+    in_doubt: InDoubt,
 }
 
 impl Tracer {
@@ -71,15 +98,22 @@ impl Tracer {
     /// [`TraceError::Threads`] where the system refuses the threads.
     pub fn new(kernel: Kernel, threads: usize) -> Result<Tracer, TraceError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|source| TraceError::Threads { threads, source })?;
         Ok(Tracer {
             kernel,
-            pool: pool.map_err(|source| TraceError::Threads { threads, source })?,
+            pool,
+            in_doubt: InDoubt::default(),
         })
     }
 
     /// The kernel it was made with.
     pub fn kernel(&self) -> Kernel {
         self.kernel
+    }
+
+    /// How many pixels of the frame traced last were in doubt; none for a kernel that knows no doubt.
+    pub fn in_doubt(&self) -> InDoubt {
+        self.in_doubt
     }
 
     /// Traces `scene` in `stage`, seen at angle `alpha` in radians, into the whole of `image`.
@@ -93,7 +127,7 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
     ) -> Result<(), TraceError> {
-        self.trace_rows(scene, stage, alpha, image, None)
+        self.trace_frame(scene, stage, alpha, image, None)
     }
 
     /// The same, and what was decided for each pixel: N² decisions, rows from the bottom.
@@ -108,11 +142,11 @@ impl Tracer {
         image: &mut Image,
     ) -> Result<Vec<Decision>, TraceError> {
         let mut decisions = vec![Decision::Background; image.samples().len() / 3];
-        self.trace_rows(scene, stage, alpha, image, Some(&mut decisions))?;
+        self.trace_frame(scene, stage, alpha, image, Some(&mut decisions))?;
         Ok(decisions)
     }
 
-    fn trace_rows(
+    fn trace_frame(
         &mut self,
         scene: &Scene,
         stage: Stage,
@@ -123,22 +157,51 @@ impl Tracer {
         if !alpha.is_finite() {
             return Err(TraceError::Angle(alpha));
         }
-        let (sin, cos) = sin_cos(alpha);
-        let size = image.size();
-        let Ok(picture) = match self.kernel {
-            Kernel::Double => Picture::<f64>::new(scene, stage, sin, cos, size),
+        let n = image.size();
+        self.in_doubt = match self.kernel {
+            Kernel::Exact => self.trace_pixels(
+                &Ladder::new(scene, stage, alpha, n, Rung::Double),
+                image,
+                decisions,
+            ),
+            Kernel::Fast => {
+                self.trace_pixels(&Plain::<f32>::new(scene, stage, alpha, n), image, decisions)
+            }
+            Kernel::Double => {
+                self.trace_pixels(&Plain::<f64>::new(scene, stage, alpha, n), image, decisions)
+            }
+            Kernel::Reference => self.trace_pixels(
+                &Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble),
+                image,
+                decisions,
+            ),
         };
-        let width = size as usize;
+        Ok(())
+    }
+
+    fn trace_pixels(
+        &self,
+        pixels: &impl Pixels,
+        image: &mut Image,
+        decisions: Option<&mut [Decision]>,
+    ) -> InDoubt {
+        let (double_double, arbitrary) = (AtomicU64::new(0), AtomicU64::new(0));
         let trace_row = |row: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
             let mut decisions = decisions.into_iter().flatten();
             for (column, sample) in samples.chunks_exact_mut(3).enumerate() {
-                let Ok((decision, color)) = picture.pixel(column as u32, row as u32);
+                let ((decision, color), rung) = pixels.pixel(column as u32, row as u32);
+                match rung {
+                    Rung::Double => {}
+                    Rung::DoubleDouble => _ = double_double.fetch_add(1, Relaxed),
+                    Rung::Arbitrary => _ = arbitrary.fetch_add(1, Relaxed),
+                }
                 sample.copy_from_slice(&color);
                 if let Some(place) = decisions.next() {
                     *place = decision;
                 }
             }
         };
+        let width = image.size() as usize;
         let rows = image
             .samples_mut()
             .par_chunks_exact_mut(3 * width)
@@ -149,6 +212,9 @@ impl Tracer {
                 .for_each(|((row, samples), decisions)| trace_row(row, samples, Some(decisions))),
             None => rows.for_each(|(row, samples)| trace_row(row, samples, None)),
         });
-        Ok(())
+        InDoubt {
+            double_double: double_double.into_inner(),
+            arbitrary: arbitrary.into_inner(),
+        }
     }
 }

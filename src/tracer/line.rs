@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::real::Real;
+use super::number::Real;
 use super::vector::Vector;
 use crate::scene::Support;
 

@@ -1,11 +1,14 @@
 //! One pixel: first hit, shading, shadow, mirror, each as far as the stage asks for it.
 
+use std::cmp::Ordering;
+use std::iter;
+
 use super::decision::{Decision, Seen};
 use super::line::{Hit, Line};
-use super::real::Real;
+use super::number::{Real, all, any};
 use super::surface::Surface;
 use super::vector::Vector;
-use super::view::{Frame, Reach, Solids, View, looking};
+use super::view::{Crossings, Frame, Reach, Solids, View, looking};
 use crate::scene::Scene;
 use crate::stage::Stage;
 
@@ -33,48 +36,37 @@ struct Mirror<R> {
     reflectance: R,
 }
 
+/// Whether anything is mirrored in this stage.
+pub(super) fn mirrors(scene: &Scene, stage: Stage) -> bool {
+    stage >= Stage::Reflection && scene.surface().is_some()
+}
+
 /// A pixel: what was decided, and the colour that follows from it.
-type Pixel = (Decision, [f32; 3]);
+pub(super) type Pixel = (Decision, [f32; 3]);
 
 impl<'a, R: Real> Picture<'a, R> {
-    /// `sin` and `cos` are those of α.
+    /// `crossings` are those of the same frame.
     pub(super) fn new(
         scene: &'a Scene,
         stage: Stage,
-        sin: R,
-        cos: R,
+        frame: &Frame<R>,
         size: u32,
+        crossings: &Crossings,
     ) -> Result<Self, R::Doubt> {
-        let half = R::exact(f64::from(size) / 2.0);
-        let frame = Frame {
-            sin,
-            cos,
-            scale: R::exact(3.0) * half,
-        };
-        let view = |mirror| {
-            let indices = 0..scene.tetrahedra().len();
-            let crossings = indices.map(|index| frame.crossing(scene, index, mirror));
-            View::new(
-                scene,
-                &frame,
-                mirror,
-                &crossings.collect::<Result<Vec<_>, _>>()?,
-            )
-        };
+        let view = |mirrored| View::new(scene, frame, crossings, mirrored);
         let floor = match (scene.surface(), frame.surface(scene)) {
             (Some(described), Some(surface)) if stage >= Stage::Shadow => Some(Floor {
-                mirror: if stage >= Stage::Reflection {
-                    let reflectance = R::exact(described.reflectance);
+                surface,
+                color: Vector::exact(described.color),
+                height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
+                mirror: if mirrors(scene, stage) {
                     Some(Mirror {
-                        view: view(Some(surface.height))?,
-                        reflectance,
+                        view: view(true)?,
+                        reflectance: R::exact(described.reflectance),
                     })
                 } else {
                     None
                 },
-                surface,
-                color: Vector::exact(described.color),
-                height_in_pixels: R::exact(described.height) * half,
             }),
             _ => None,
         };
@@ -82,7 +74,7 @@ impl<'a, R: Real> Picture<'a, R> {
             scene,
             stage,
             size,
-            view: view(None)?,
+            view: view(false)?,
             floor,
         })
     }
@@ -164,18 +156,19 @@ impl<'a, R: Real> Picture<'a, R> {
         if let Some(floor) = &self.floor {
             let depth =
                 R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
-            let hides = match &hit {
+            let hides = || match &hit {
                 // Of a solid and the surface at the same depth, the solid is seen.
-                Some((_, hit)) if hit.support == floor.surface.support => false,
-                Some((_, hit)) => (hit.depth - depth).sign()?.is_gt(),
-                None => true,
+                Some((_, hit)) if hit.support == floor.surface.support => Ok(false),
+                Some((_, hit)) => (hit.depth - depth).sign().map(Ordering::is_gt),
+                None => Ok(true),
             };
             // Its height is known without any rounding.
             let point = Vector {
                 y: floor.surface.height,
                 ..ray.at(depth)
             };
-            if hides && floor.surface.contains(point)? {
+            let contains = || floor.surface.contains(point);
+            if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
                 return self.surface_at(floor, point);
             }
         }
@@ -227,12 +220,16 @@ impl<'a, R: Real> Picture<'a, R> {
         hit: &Hit<R>,
     ) -> Result<(bool, Vector<R>), R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
-        let in_shadow = view.facing_light(hit)?.is_le()
-            || view.is_shadowed(&ray)?
-            || match &self.floor {
-                Some(floor) => floor.surface.is_ahead(&ray)?,
-                None => false,
-            };
+        let turned_away = || view.facing_light(hit).map(Ordering::is_le);
+        let by_solid = || view.is_shadowed(&ray);
+        let by_surface = || {
+            self.floor
+                .as_ref()
+                .map_or(Ok(false), |floor| floor.surface.is_ahead(&ray))
+        };
+        let in_shadow = any(iter::once_with(turned_away)
+            .chain(iter::once_with(by_solid))
+            .chain(iter::once_with(by_surface)))?;
         let light = if in_shadow {
             view.shading.ambient()
         } else {

@@ -1,7 +1,7 @@
 //! Equation 4-1: ambient, diffuse and specular light at a point of a solid.
 
 use super::line::Direction;
-use super::real::Real;
+use super::number::Real;
 use super::vector::Vector;
 use crate::scene::Scene;
 

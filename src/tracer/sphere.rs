@@ -1,9 +1,10 @@
 //! A line and a sphere: equation 3-1 in its perpendicular form.
 
 use std::cmp::Ordering;
+use std::iter;
 
 use super::line::{Hit, Line};
-use super::real::Real;
+use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Support;
 
@@ -55,8 +56,17 @@ impl<R: Real> Sphere<R> {
         if ray.leaves == Some(self.support) {
             return Ok(false);
         }
-        let approach = (self.center - ray.origin).dot(ray.direction.vector);
-        Ok(approach.sign()? == Ordering::Greater
-            && self.discriminant(ray, self.moment(ray)).sign()?.is_ge())
+        let approaches = || {
+            (self.center - ray.origin)
+                .dot(ray.direction.vector)
+                .sign()
+                .map(Ordering::is_gt)
+        };
+        let touches = || {
+            self.discriminant(ray, self.moment(ray))
+                .sign()
+                .map(Ordering::is_ge)
+        };
+        all(iter::once_with(approaches).chain(iter::once_with(touches)))
     }
 }

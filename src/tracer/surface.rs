@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::line::Line;
-use super::real::Real;
+use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Support;
 
@@ -32,12 +32,9 @@ impl<R: Real> Surface<R> {
 
     /// The same with point and square scaled by one positive factor, which is in `half_width` already.
     fn contains_scaled(&self, point: Vector<R>, half_width: R) -> Result<bool, R::Doubt> {
-        for coordinate in self.along_sides(point) {
-            if (half_width - coordinate.abs()?).sign()?.is_lt() {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+        // Each side by itself: on the middle line a coordinate's sign would be in doubt, and nobody asks for it.
+        let [a, b] = self.along_sides(point);
+        all([a, -a, b, -b].map(|coordinate| Ok((half_width - coordinate).sign()?.is_ge())))
     }
 
     /// Whether the ray meets the square at some t > 0, from either side; one that lies in its plane, if it meets it there.
@@ -54,7 +51,11 @@ impl<R: Real> Surface<R> {
             (Ordering::Equal, _) | (_, Ordering::Equal) => Ok(false),
             (up, toward) if up == toward => {
                 // The point at t = rise/climb, times |climb|: no division, so that the border is as sharp as can be.
-                let (climb, rise) = (climb.abs()?, rise.abs()?);
+                let (climb, rise) = if up.is_gt() {
+                    (climb, rise)
+                } else {
+                    (-climb, -rise)
+                };
                 self.contains_scaled(
                     ray.origin * climb + ray.direction.vector * rise,
                     self.half_width * climb,
@@ -72,7 +73,9 @@ impl<R: Real> Surface<R> {
         for (start, speed) in origin.into_iter().zip(direction) {
             let heading = speed.sign()?;
             if heading.is_eq() {
-                if (self.half_width - start.abs()?).sign()?.is_lt() {
+                if (self.half_width - start).sign()?.is_lt()
+                    || (self.half_width + start).sign()?.is_lt()
+                {
                     return Ok(false);
                 }
                 continue;

@@ -8,9 +8,10 @@
 //! line cannot slip between them.
 
 use std::cmp::Ordering;
+use std::iter;
 
 use super::line::{Direction, Hit, Line};
-use super::real::Real;
+use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Support;
 
@@ -123,35 +124,34 @@ impl<R: Real> Tetrahedron<R> {
             .sign()
     }
 
-    /// The face where the whole line first meets the solid; touching counts.
-    fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<Option<usize>, R::Doubt> {
-        for face in 0..4 {
-            if sight.crossing[face].is_eq() && self.origin_outside(face, line)?.is_gt() {
-                return Ok(None);
-            }
-        }
-        // The faces in the order of their number; `last` is the one entered last among those before, so that of several
-        // entered at once the lowest stays.
-        let mut last = None;
-        for face in (0..4).filter(|&face| sight.crossing[face].is_lt()) {
-            last = match last {
-                Some(before) if self.side(edge_of(before, face), sight, line)?.is_ge() => {
-                    Some(before)
+    /// Whether the line meets the solid: it enters no face after it has left one, and is outside of none that it runs along.
+    fn meets(&self, sight: &Sight<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
+        let beside =
+            faces(sight, Ordering::Equal).map(|face| Ok(self.origin_outside(face, line)?.is_le()));
+        let pairs = EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
+            match (sight.crossing[i], sight.crossing[j]) {
+                (Ordering::Less, Ordering::Greater) => {
+                    Some(self.side(edge, sight, line).map(Ordering::is_ge))
                 }
-                _ => Some(face),
-            };
-        }
-        let Some(entered) = last else { return Ok(None) };
-        for left in (0..4).filter(|&face| sight.crossing[face].is_gt()) {
-            let (i, j) = (entered.min(left), entered.max(left));
-            // The function of an edge is written for its lower face entered and its higher face left.
-            let side = self.side(edge_of(i, j), sight, line)?;
-            let enters_first = if entered == i { side } else { side.reverse() };
-            if enters_first.is_lt() {
-                return Ok(None);
+                (Ordering::Greater, Ordering::Less) => {
+                    Some(self.side(edge, sight, line).map(Ordering::is_le))
+                }
+                _ => None,
+            }
+        });
+        all(beside.chain(pairs))
+    }
+
+    /// The face that a line enters last, and so the solid; of several at once, the lowest. Every line enters one.
+    fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<usize, R::Doubt> {
+        let mut entering = faces(sight, Ordering::Less);
+        let mut last = entering.next().unwrap_or(0);
+        for face in entering {
+            if self.side(edge_of(last, face), sight, line)?.is_lt() {
+                last = face;
             }
         }
-        Ok(Some(entered))
+        Ok(last)
     }
 
     /// The first point of the whole line in the solid.
@@ -160,29 +160,37 @@ impl<R: Real> Tetrahedron<R> {
         sight: &Sight<R>,
         line: &Line<R>,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
-        Ok(self.entered_face(sight, line)?.map(|face| {
-            let depth = -self.outside(face, line.origin) / sight.speed[face];
-            Hit {
-                depth,
-                point: line.at(depth),
-                normal: self.normals[face],
-                normal_length: self.normal_lengths[face],
-                face: Some(face as u8),
-                support: self.supports[face],
-                facing_light: Some(self.facing_light[face]),
-            }
+        if !self.meets(sight, line)? {
+            return Ok(None);
+        }
+        let face = self.entered_face(sight, line)?;
+        let depth = -self.outside(face, line.origin) / sight.speed[face];
+        Ok(Some(Hit {
+            depth,
+            point: line.at(depth),
+            normal: self.normals[face],
+            normal_length: self.normal_lengths[face],
+            face: Some(face as u8),
+            support: self.supports[face],
+            facing_light: Some(self.facing_light[face]),
         }))
     }
 
     /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it leaves lies ahead.
     pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        for face in (0..4).filter(|&face| sight.crossing[face].is_gt()) {
-            if self.origin_outside(face, ray)?.is_ge() {
-                return Ok(false);
-            }
-        }
-        Ok(self.entered_face(sight, ray)?.is_some())
+        let leaving = faces(sight, Ordering::Greater);
+        let ahead = leaving.map(|face| Ok(self.origin_outside(face, ray)?.is_lt()));
+        all(ahead.chain(iter::once_with(|| self.meets(sight, ray))))
     }
+}
+
+/// The faces that lines cross in one way.
+fn faces<R>(sight: &Sight<R>, crossing: Ordering) -> impl Iterator<Item = usize> {
+    sight
+        .crossing
+        .into_iter()
+        .enumerate()
+        .filter_map(move |(face, sign)| (sign == crossing).then_some(face))
 }
 
 /// The place in [`EDGES`] of the edge that faces i < j share.

@@ -19,7 +19,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::line::{Direction, Hit, Line};
-use super::real::Real;
+use super::number::{Real, any};
 use super::shading::Shading;
 use super::sphere::Sphere;
 use super::surface::Surface;
@@ -37,6 +37,22 @@ pub(super) struct Frame<R> {
 }
 
 impl<R: Real> Frame<R> {
+    /// `sin` and `cos` are those of α, `size` is N.
+    pub(super) fn new(sin: R, cos: R, size: u32) -> Self {
+        Frame {
+            sin,
+            cos,
+            scale: R::exact(1.5 * f64::from(size)),
+        }
+    }
+
+    /// The height of the plane that reflects, in view space.
+    fn mirror(&self, scene: &Scene) -> Option<R> {
+        scene
+            .surface()
+            .map(|surface| R::exact(surface.height) * self.scale)
+    }
+
     fn turn(&self, v: DVec3) -> Vector<R> {
         let v = Vector::<R>::exact(v);
         Vector::new(
@@ -54,7 +70,7 @@ impl<R: Real> Frame<R> {
     pub(super) fn surface(&self, scene: &Scene) -> Option<Surface<R>> {
         let surface = scene.surface()?;
         Some(Surface {
-            height: R::exact(surface.height) * self.scale,
+            height: self.mirror(scene)?,
             half_width: R::exact(surface.half_width) * self.scale,
             sin: self.sin,
             cos: self.cos,
@@ -78,14 +94,43 @@ impl<R: Real> Frame<R> {
         )
     }
 
-    /// For each tetrahedron, the sign of n·d for each face and the eye's direction d.
+    /// The sign of n·d for each face of a tetrahedron and the eye's direction d.
     pub(super) fn crossing(
         &self,
         scene: &Scene,
         index: usize,
-        mirror: Option<R>,
-    ) -> Result<[Ordering; 4], R::Doubt> {
+        mirrored: bool,
+    ) -> Result<Crossing, R::Doubt> {
+        let mirror = self.mirror(scene).filter(|_| mirrored);
         self.tetrahedron(scene, index, mirror).crossing(&looking())
+    }
+}
+
+/// For each face, whether an eye ray enters there (less), runs along it (equal) or leaves (greater).
+pub(super) type Crossing = [Ordering; 4];
+
+/// How eye rays cross every tetrahedron: seen directly, and in the mirror where there is one.
+pub(super) struct Crossings {
+    direct: Vec<Crossing>,
+    mirrored: Vec<Crossing>,
+}
+
+impl Crossings {
+    /// `crossing` tells that of a tetrahedron, given by its index, directly (false) or mirrored (true).
+    pub(super) fn new<D>(
+        scene: &Scene,
+        mirrors: bool,
+        crossing: impl Fn(usize, bool) -> Result<Crossing, D>,
+    ) -> Result<Crossings, D> {
+        let all = |mirrored| {
+            (0..scene.tetrahedra().len())
+                .map(|i| crossing(i, mirrored))
+                .collect::<Result<Vec<_>, D>>()
+        };
+        Ok(Crossings {
+            direct: all(false)?,
+            mirrored: if mirrors { all(true)? } else { Vec::new() },
+        })
     }
 }
 
@@ -135,14 +180,19 @@ pub(super) enum Solids {
 }
 
 impl<R: Real> View<R> {
-    /// `mirror`: the height in view space of the plane in which everything is reflected. `crossings`: what
-    /// [`Frame::crossing`] says of each tetrahedron.
+    /// The scene itself, or in the mirror.
     pub(super) fn new(
         scene: &Scene,
         frame: &Frame<R>,
-        mirror: Option<R>,
-        crossings: &[[Ordering; 4]],
+        crossings: &Crossings,
+        mirrored: bool,
     ) -> Result<View<R>, R::Doubt> {
+        let mirror = frame.mirror(scene).filter(|_| mirrored);
+        let crossings = if mirrored {
+            &crossings.mirrored
+        } else {
+            &crossings.direct
+        };
         let light = -frame.turn(scene.light().scaled_direction());
         let light = if mirror.is_some() {
             Vector::new(light.x, -light.y, light.z)
@@ -220,17 +270,12 @@ impl<R: Real> View<R> {
 
     /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the light.
     pub(super) fn is_shadowed(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        for sphere in &self.spheres {
-            if sphere.is_ahead(ray)? {
-                return Ok(true);
-            }
-        }
-        for tetrahedron in &self.tetrahedra {
-            if tetrahedron.solid.is_ahead(&tetrahedron.from_light, ray)? {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        let spheres = self.spheres.iter().map(|sphere| sphere.is_ahead(ray));
+        let tetrahedra = self
+            .tetrahedra
+            .iter()
+            .map(|t| t.solid.is_ahead(&t.from_light, ray));
+        any(spheres.chain(tetrahedra))
     }
 
     /// The ray toward the light from a point of a sphere or plane, outward.

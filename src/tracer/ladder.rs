@@ -1,0 +1,133 @@
+//! From number to number: each pixel by the cheapest arithmetic that leaves no doubt about it.
+
+use std::cell::LazyCell;
+use std::convert::Infallible;
+use std::sync::OnceLock;
+
+use super::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
+use super::pixel::{Picture, Pixel, mirrors};
+use super::view::{Crossings, Frame};
+use crate::scene::Scene;
+use crate::stage::Stage;
+
+/// The arithmetic that settled a pixel, cheapest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rung {
+    /// f64, with a bound on its error where the kernel asks for one.
+    Double,
+    /// Double-doubles with a bound.
+    DoubleDouble,
+    /// Arbitrary precision.
+    Arbitrary,
+}
+
+/// The pixels of a frame.
+pub(super) trait Pixels: Sync {
+    /// The pixel at `column` and `row`, and what settled it.
+    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung);
+}
+
+/// A kernel of one number that always answers.
+pub(super) struct Plain<'a, R>(Picture<'a, R>);
+
+impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
+    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
+        let frame = frame::<R>(alpha, size);
+        let crossing = |index, mirrored| frame.crossing(scene, index, mirrored);
+        let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
+        let Ok(picture) = Picture::new(scene, stage, &frame, size, &crossings);
+        Plain(picture)
+    }
+}
+
+impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
+    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
+        let Ok(pixel) = self.0.pixel(column, row);
+        (pixel, Rung::Double)
+    }
+}
+
+/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many digits as it takes.
+pub(super) struct Ladder<'a> {
+    scene: &'a Scene,
+    stage: Stage,
+    alpha: f64,
+    size: u32,
+    crossings: Crossings,
+    /// `None` where the frame itself is in doubt already, or the kernel does without this rung.
+    bounded: Option<Picture<'a, Bounded>>,
+    /// Made when it is first needed.
+    double_double: OnceLock<Option<Picture<'a, DoubleDouble>>>,
+}
+
+impl<'a> Ladder<'a> {
+    /// A ladder that begins at the rung `lowest`.
+    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32, lowest: Rung) -> Self {
+        let bounded = frame::<Bounded>(alpha, size);
+        let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
+        let crossing = |index, mirrored| {
+            bounded
+                .crossing(scene, index, mirrored)
+                .or_else(|Doubt| double_double.crossing(scene, index, mirrored))
+                .or_else(|Doubt| {
+                    Expression::session(|| {
+                        frame::<Expression>(alpha, size).crossing(scene, index, mirrored)
+                    })
+                })
+        };
+        let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
+        let bounded = match lowest {
+            Rung::Double => Picture::new(scene, stage, &bounded, size, &crossings).ok(),
+            _ => None,
+        };
+        Ladder {
+            scene,
+            stage,
+            alpha,
+            size,
+            crossings,
+            bounded,
+            double_double: OnceLock::new(),
+        }
+    }
+}
+
+fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
+    let (sin, cos) = R::sin_cos(alpha);
+    Frame::new(sin, cos, size)
+}
+
+impl Pixels for Ladder<'_> {
+    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
+        if let Some(Ok(pixel)) = self
+            .bounded
+            .as_ref()
+            .map(|picture| picture.pixel(column, row))
+        {
+            return (pixel, Rung::Double);
+        }
+        let double_double = self.double_double.get_or_init(|| {
+            Picture::new(
+                self.scene,
+                self.stage,
+                &frame(self.alpha, self.size),
+                self.size,
+                &self.crossings,
+            )
+            .ok()
+        });
+        if let Some(Ok(pixel)) = double_double
+            .as_ref()
+            .map(|picture| picture.pixel(column, row))
+        {
+            return (pixel, Rung::DoubleDouble);
+        }
+        Expression::session(|| {
+            let frame = frame::<Expression>(self.alpha, self.size);
+            let Ok(picture) =
+                Picture::new(self.scene, self.stage, &frame, self.size, &self.crossings);
+            let Ok(pixel) = picture.pixel(column, row);
+            (pixel, Rung::Arbitrary)
+        })
+    }
+}

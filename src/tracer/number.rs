@@ -1,0 +1,151 @@
+//! The abstract number that every formula is written over, and the numbers that kernels are made of.
+
+mod bounded;
+mod double_double;
+mod expression;
+
+use std::cmp::Ordering;
+use std::convert::Infallible;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::camera;
+pub(crate) use bounded::Bounded;
+pub(crate) use double_double::DoubleDouble;
+pub(crate) use expression::Expression;
+
+/// A number cannot tell a sign or a rounding: what it knows of the truth allows more than one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Doubt;
+
+/// A real number as a kernel holds it: exactly, roughly, or within known bounds.
+///
+/// A kernel is a choice of number and of what to do when that number cannot tell a sign or a rounding: its *doubt*.
+pub(crate) trait Real:
+    Copy
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
+    /// What is returned in place of an answer that this number cannot give; [`Infallible`] where it always answers.
+    type Doubt;
+
+    /// The value of an f64, taken exactly.
+    fn exact(value: f64) -> Self;
+
+    /// The sine and the cosine of an angle, its f64 taken exactly.
+    fn sin_cos(alpha: f64) -> (Self, Self);
+
+    /// The square root of a number that is not negative.
+    fn sqrt(self) -> Self;
+
+    /// (1 − self)ⁿ, and 0 from self = 1 on.
+    ///
+    /// A highlight is (n·h)ⁿ with n near 1000, which would multiply the relative error of n·h by n. What a formula knows
+    /// well is 1 − n·h, so that is what it hands over.
+    fn one_minus_to_the(self, exponent: u32) -> Self;
+
+    /// Less than, equal to or greater than 0.
+    fn sign(self) -> Result<Ordering, Self::Doubt>;
+
+    /// Rounded to the nearest f32, ties to even; a zero is +0.
+    fn to_sample(self) -> Result<f32, Self::Doubt>;
+
+    /// Its square.
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl Real for f64 {
+    type Doubt = Infallible;
+
+    fn exact(value: f64) -> f64 {
+        value
+    }
+
+    fn sin_cos(alpha: f64) -> (f64, f64) {
+        camera::sin_cos(alpha)
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn one_minus_to_the(self, exponent: u32) -> f64 {
+        if self >= 1.0 {
+            return 0.0;
+        }
+        // libm is Rust code throughout: the same bits on every platform, within an ulp of log1p and of exp.
+        libm::exp(f64::from(exponent) * libm::log1p(-self))
+    }
+
+    fn sign(self) -> Result<Ordering, Infallible> {
+        // A NaN cannot come up: a scene's numbers are finite and far from overflow, and nothing divides by 0.
+        Ok(self.partial_cmp(&0.0).unwrap_or(Ordering::Equal))
+    }
+
+    fn to_sample(self) -> Result<f32, Infallible> {
+        // + 0 turns −0 into +0 and changes nothing else.
+        Ok(self as f32 + 0.0)
+    }
+}
+
+impl Real for f32 {
+    type Doubt = Infallible;
+
+    fn exact(value: f64) -> f32 {
+        value as f32
+    }
+
+    fn sin_cos(alpha: f64) -> (f32, f32) {
+        let (sin, cos) = camera::sin_cos(alpha);
+        (sin as f32, cos as f32)
+    }
+
+    fn sqrt(self) -> f32 {
+        f32::sqrt(self)
+    }
+
+    fn one_minus_to_the(self, exponent: u32) -> f32 {
+        if self >= 1.0 {
+            return 0.0;
+        }
+        libm::expf(exponent as f32 * libm::log1pf(-self))
+    }
+
+    fn sign(self) -> Result<Ordering, Infallible> {
+        // A NaN, which a scene of extreme numbers can produce in 24 bits, counts as 0.
+        Ok(self.partial_cmp(&0.0).unwrap_or(Ordering::Equal))
+    }
+
+    fn to_sample(self) -> Result<f32, Infallible> {
+        Ok(self + 0.0)
+    }
+}
+
+/// The sample that both ends of an enclosure round to; `None` where they differ.
+fn round_enclosure(lower: f32, upper: f32) -> Option<f32> {
+    (lower == upper).then_some(lower + 0.0)
+}
+
+/// Whether all of these hold: one that certainly does not makes every doubt about the others idle.
+pub(crate) fn all<D>(decisions: impl IntoIterator<Item = Result<bool, D>>) -> Result<bool, D> {
+    let mut doubt = None;
+    for decision in decisions {
+        match decision {
+            Ok(true) => {}
+            Ok(false) => return Ok(false),
+            Err(open) => doubt = Some(open),
+        }
+    }
+    doubt.map_or(Ok(true), Err)
+}
+
+/// Whether any of these holds: one that certainly does makes every doubt about the others idle.
+pub(crate) fn any<D>(decisions: impl IntoIterator<Item = Result<bool, D>>) -> Result<bool, D> {
+    Ok(!all(decisions
+        .into_iter()
+        .map(|decision| decision.map(|holds| !holds)))?)
+}

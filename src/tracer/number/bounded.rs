@@ -1,0 +1,178 @@
+//! An f64 and a bound on how far it is from the truth.
+//!
+//! # Why the bounds hold
+//!
+//! Every operation of IEEE 754 returns fl(a ∘ b) = (a ∘ b)(1 + δ), |δ| ≤ u = 2⁻⁵³, where nothing underflows; sums are exact
+//! where they would underflow. With a = A + α, |α| ≤ E_a for the true A, and the same for b, the error of a result v is at most
+//!
+//! - sum: E_a + E_b + u|v|,
+//! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β),
+//! - quotient: (E_a + |a/b|E_b)/|B| + u|v|, from A/B − a/b = ((A − a)b − a(B − b))/(Bb), with |B| ≥ |b| − E_b,
+//! - root: E_a/√a + u v, from |√A − √a| = |A − a|/(√A + √a), √A ≥ 0.
+//!
+//! These expressions are themselves computed in f64. Each is made of at most 12 operations on terms that are not negative,
+//! so that what is computed is at least (1 − u)¹² of the expression, and [`ROUND_UP`] more than makes up for that, for
+//! u|v| in place of u|a ∘ b|, and for |v| in place of |a/b|. What underflow can take away is less than [`UNDERFLOW`]: a scene's
+//! numbers have magnitudes from 1e-30 to 1e6, no formula has a term of more than eight factors of them, and a number as
+//! small as 1e-290 is in doubt.
+
+use std::cmp::Ordering;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::double_double::DoubleDouble;
+use super::{Doubt, Real, round_enclosure};
+use crate::camera;
+
+/// u, the largest relative error of one rounding to f64.
+pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// 1 + 2⁻⁴⁸ = 1 + 32u.
+pub(super) const ROUND_UP: f64 = 1.0 + 64.0 * f64::EPSILON / 4.0;
+
+/// More than any chain of operations here loses to underflow, and less than any number that matters.
+pub(super) const UNDERFLOW: f64 = 1e-290;
+
+/// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity or NaN says nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounded {
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+impl Bounded {
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.error == 0.0
+    }
+}
+
+impl Add for Bounded {
+    type Output = Bounded;
+    fn add(self, other: Bounded) -> Bounded {
+        let value = self.value + other.value;
+        Bounded {
+            value,
+            error: (self.error + other.error + UNIT_ROUNDOFF * value.abs()) * ROUND_UP,
+        }
+    }
+}
+
+impl Neg for Bounded {
+    type Output = Bounded;
+    fn neg(self) -> Bounded {
+        Bounded {
+            value: -self.value,
+            error: self.error,
+        }
+    }
+}
+
+impl Sub for Bounded {
+    type Output = Bounded;
+    fn sub(self, other: Bounded) -> Bounded {
+        self + -other
+    }
+}
+
+impl Mul for Bounded {
+    type Output = Bounded;
+    fn mul(self, other: Bounded) -> Bounded {
+        if self.is_zero() || other.is_zero() {
+            return Bounded::exact(0.0);
+        }
+        let value = self.value * other.value;
+        let carried = self.value.abs() * other.error
+            + other.value.abs() * self.error
+            + self.error * other.error;
+        Bounded {
+            value,
+            error: (carried + UNIT_ROUNDOFF * value.abs()) * ROUND_UP + UNDERFLOW,
+        }
+    }
+}
+
+impl Div for Bounded {
+    type Output = Bounded;
+    fn div(self, other: Bounded) -> Bounded {
+        // A divisor known to fewer than 26 bits tells nothing worth knowing.
+        let divisor = other.value.abs();
+        let known = other.error < divisor * f64::EPSILON.sqrt();
+        if !known {
+            return Bounded {
+                value: 0.0,
+                error: f64::INFINITY,
+            };
+        }
+        let value = self.value / other.value;
+        let carried = (self.error + value.abs() * other.error) / (divisor - other.error);
+        Bounded {
+            value,
+            error: (carried + UNIT_ROUNDOFF * value.abs()) * ROUND_UP + UNDERFLOW,
+        }
+    }
+}
+
+impl Real for Bounded {
+    type Doubt = Doubt;
+
+    fn exact(value: f64) -> Bounded {
+        Bounded { value, error: 0.0 }
+    }
+
+    fn sin_cos(alpha: f64) -> (Bounded, Bounded) {
+        let (sin, cos) = camera::sin_cos(alpha);
+        if alpha == 0.0 {
+            return (Bounded::exact(sin), Bounded::exact(cos));
+        }
+        // Both are correctly rounded; where u|v| underflows, the smallest f64 is more than enough.
+        let rounded = |value: f64| Bounded {
+            value,
+            error: value.abs() * UNIT_ROUNDOFF + f64::from_bits(1),
+        };
+        (rounded(sin), rounded(cos))
+    }
+
+    fn sqrt(self) -> Bounded {
+        if self.is_zero() {
+            return self;
+        }
+        let positive = self.value > self.error;
+        if !positive {
+            // Between 0 and the root of the most that it can be.
+            let most = (self.value + self.error).max(0.0) * ROUND_UP;
+            return Bounded {
+                value: 0.0,
+                error: most.sqrt() * ROUND_UP,
+            };
+        }
+        let value = self.value.sqrt();
+        Bounded {
+            value,
+            error: (self.error / value + UNIT_ROUNDOFF * value) * ROUND_UP,
+        }
+    }
+
+    fn one_minus_to_the(self, exponent: u32) -> Bounded {
+        DoubleDouble::from(self).one_minus_to_the(exponent).into()
+    }
+
+    fn sign(self) -> Result<Ordering, Doubt> {
+        if self.value > self.error {
+            Ok(Ordering::Greater)
+        } else if -self.value > self.error {
+            Ok(Ordering::Less)
+        } else if self.is_zero() {
+            Ok(Ordering::Equal)
+        } else {
+            Err(Doubt)
+        }
+    }
+
+    fn to_sample(self) -> Result<f32, Doubt> {
+        if self.error == 0.0 {
+            return Ok(self.value as f32 + 0.0);
+        }
+        // The ends of the enclosure, moved out by more than the rounding that computes them.
+        let error = (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
+        round_enclosure((self.value - error) as f32, (self.value + error) as f32).ok_or(Doubt)
+    }
+}
