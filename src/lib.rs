@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod image;
 pub mod scene;
+pub mod screen;
 mod stage;
 pub mod tracer;
 

@@ -1,0 +1,223 @@
+//! The way of a picture to the screen: uploaded as one retained texture, drawn on one quad, pixel for pixel.
+//!
+//! A [`Screen`] is the texture and the quad in whatever OpenGL 3.3 core context is current: a window's, or one of the contexts without a
+//! window that [`Offscreen`] makes to read the drawn picture back. A [`Placement`] says where in the window the picture lies.
+//!
+//! Samples stay the 32-bit floats that were traced: the texture is `RGB32F`, the shader fetches texels without filtering, and nothing
+//! blends, dithers or encodes them, so a float framebuffer holds them bit for bit and an 8-bit one holds
+//! `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
+//! all their bits, those of signalling NaNs too.
+
+mod egl;
+mod error;
+mod offscreen;
+mod osmesa;
+mod placement;
+mod program;
+
+use std::rc::Rc;
+
+use glam::{I64Vec2, UVec2};
+use glow::HasContext as _;
+
+use crate::image::{Image, ImageError, MAX_SIZE};
+pub use error::ScreenError;
+pub use offscreen::{Offscreen, Through};
+pub use placement::Placement;
+use program::Program;
+
+/// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let the desktop shine through.
+const CLEAR_COLOR: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
+
+/// What changes fragments on their way into the framebuffer, or keeps them out.
+const FRAGMENT_CAPABILITIES: [u32; 8] = [
+    glow::BLEND,
+    glow::CULL_FACE,
+    glow::DEPTH_TEST,
+    glow::DITHER,
+    glow::FRAMEBUFFER_SRGB,
+    glow::RASTERIZER_DISCARD,
+    glow::SCISSOR_TEST,
+    glow::STENCIL_TEST,
+];
+
+/// The retained texture and the quad that shows it.
+///
+/// Every method, and the drop, needs the context of [`Screen::new`] to be current on this thread. Each sets all state it relies on and
+/// restores none.
+pub struct Screen {
+    gl: Rc<glow::Context>,
+    program: Program,
+    texture: glow::Texture,
+    /// Empty: a core context draws nothing without one.
+    vertex_array: glow::VertexArray,
+    size: u32,
+}
+
+impl Screen {
+    /// A screen for pictures of `size` × `size` pixels in the OpenGL 3.3 core context that is current and whose functions are `gl`.
+    ///
+    /// # Errors
+    /// [`ScreenError::Image`] where there is no picture of that size, [`ScreenError::TextureTooLarge`] and [`ScreenError::Memory`] where
+    /// it is beyond the driver, [`ScreenError::Refused`] where the driver refuses the shaders or the texture.
+    pub fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
+        if !(1..=MAX_SIZE).contains(&size) {
+            return Err(ImageError::Size(size).into());
+        }
+        // SAFETY: whoever made `gl` has promised that its functions are loaded from a context; an `Rc` has not left that context's thread.
+        let max = unsafe { gl.get_parameter_i32(glow::MAX_TEXTURE_SIZE) }.unsigned_abs();
+        if size > max {
+            return Err(ScreenError::TextureTooLarge { size, max });
+        }
+        let program = Program::new(gl.clone())?;
+        // SAFETY: as above.
+        let vertex_array = unsafe { gl.create_vertex_array() }
+            .map_err(|reason| ScreenError::refused("a vertex array", &reason))?;
+        // SAFETY: as above.
+        let texture = unsafe { gl.create_texture() }
+            .map_err(|reason| ScreenError::refused("a texture", &reason))?;
+        let screen = Screen {
+            gl,
+            program,
+            texture,
+            vertex_array,
+            size,
+        };
+        screen.allocate()?;
+        Ok(screen)
+    }
+
+    /// Gives the texture its size and format.
+    fn allocate(&self) -> Result<(), ScreenError> {
+        let gl = &self.gl;
+        // SAFETY: the context is current; without data the driver reads none of our memory.
+        unsafe {
+            gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
+            gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+            gl.tex_image_2d(
+                glow::TEXTURE_2D,
+                0,
+                glow::RGB32F as i32,
+                self.size as i32,
+                self.size as i32,
+                0,
+                glow::RGB,
+                glow::FLOAT,
+                glow::PixelUnpackData::Slice(None),
+            );
+            // One level: the texture is complete, and so may be fetched from, whatever filter or sampler is set.
+            gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, 0);
+        }
+        check(gl, "a texture of 32-bit floats", self.size)
+    }
+
+    /// Replaces the texture's texels by the samples of `image`.
+    ///
+    /// # Errors
+    /// [`ScreenError::Size`] unless `image` has the size of the screen, [`ScreenError::Memory`] and [`ScreenError::Refused`] where the
+    /// driver cannot take it.
+    pub fn upload(&mut self, image: &Image) -> Result<(), ScreenError> {
+        if image.size() != self.size {
+            return Err(ScreenError::Size {
+                image: image.size(),
+                screen: self.size,
+            });
+        }
+        let gl = &self.gl;
+        // SAFETY: the context is current. With these pixel-store parameters and no buffer bound, the driver reads exactly
+        // size × size × 3 floats, and so many an image of this size has.
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+            for (parameter, value) in [
+                (glow::UNPACK_ALIGNMENT, 1),
+                (glow::UNPACK_ROW_LENGTH, 0),
+                (glow::UNPACK_SKIP_ROWS, 0),
+                (glow::UNPACK_SKIP_PIXELS, 0),
+                (glow::UNPACK_SWAP_BYTES, 0),
+            ] {
+                gl.pixel_store_i32(parameter, value);
+            }
+            gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
+            gl.tex_sub_image_2d(
+                glow::TEXTURE_2D,
+                0,
+                0,
+                0,
+                self.size as i32,
+                self.size as i32,
+                glow::RGB,
+                glow::FLOAT,
+                glow::PixelUnpackData::Slice(Some(as_bytes(image.samples()))),
+            );
+        }
+        check(gl, "to take the picture as a texture", self.size)
+    }
+
+    /// Clears the bound framebuffer, `surface` wide and high in pixels, and draws the picture into `placement` by nearest neighbour: of
+    /// the E pixels along a side, pixel p shows the picture's ⌊(p + ½) N / E⌋, exactly, as long as N E is less than 2³¹.
+    pub fn draw(&self, surface: UVec2, placement: Placement) {
+        let gl = &self.gl;
+        let origin = placement.origin.as_i64vec2();
+        let corner = (origin + i64::from(placement.extent)).min(surface.as_i64vec2());
+        let start = origin.max(I64Vec2::ZERO);
+        let visible = (corner - start).max(I64Vec2::ZERO).as_ivec2();
+        let start = start.as_ivec2();
+        // SAFETY: the context is current and all names are of it; the vertex shader reads no buffer.
+        unsafe {
+            for capability in FRAGMENT_CAPABILITIES {
+                gl.disable(capability);
+            }
+            gl.color_mask(true, true, true, true);
+            gl.polygon_mode(glow::FRONT_AND_BACK, glow::FILL);
+
+            let [red, green, blue, alpha] = CLEAR_COLOR;
+            gl.clear_color(red, green, blue, alpha);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+            if visible.min_element() == 0 {
+                return;
+            }
+
+            gl.viewport(start.x, start.y, visible.x, visible.y);
+            gl.use_program(Some(self.program.name));
+            gl.uniform_2_i32(
+                self.program.origin.as_ref(),
+                placement.origin.x,
+                placement.origin.y,
+            );
+            gl.uniform_1_u32(self.program.extent.as_ref(), placement.extent);
+            gl.active_texture(glow::TEXTURE0);
+            gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
+            gl.bind_vertex_array(Some(self.vertex_array));
+            gl.draw_arrays(glow::TRIANGLE_STRIP, 0, 4);
+        }
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // SAFETY: both names were made here and nothing else deletes them; the program frees itself.
+        unsafe {
+            self.gl.delete_texture(self.texture);
+            self.gl.delete_vertex_array(self.vertex_array);
+        }
+    }
+}
+
+/// The driver's oldest error since the last check, if any, as what kept it from doing `what` for a picture of `size` × `size` pixels.
+fn check(gl: &glow::Context, what: &'static str, size: u32) -> Result<(), ScreenError> {
+    // SAFETY: the context is current.
+    match unsafe { gl.get_error() } {
+        glow::NO_ERROR => Ok(()),
+        glow::OUT_OF_MEMORY => Err(ScreenError::Memory { size }),
+        code => Err(ScreenError::refused(
+            what,
+            &format!("OpenGL error {code:#06x}"),
+        )),
+    }
+}
+
+/// The bytes of `samples`, as glow wants them.
+fn as_bytes(samples: &[f32]) -> &[u8] {
+    // SAFETY: the same memory for the same time; every byte of a float is initialised and a byte has no alignment.
+    unsafe { std::slice::from_raw_parts(samples.as_ptr().cast(), size_of_val(samples)) }
+}

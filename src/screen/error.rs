@@ -1,0 +1,129 @@
+//! What can keep a picture from the screen.
+
+use crate::image::ImageError;
+
+/// A screen that cannot be made or used. Each message is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum ScreenError {
+    /// A library that the way to the screen needs is not there.
+    #[error(
+        "{library} cannot be used ({reason}): install it (Debian packages: {packages}), or capture with `--through none`, which needs no OpenGL"
+    )]
+    Missing {
+        /// The file that was looked for first.
+        library: &'static str,
+        /// What the system said.
+        reason: String,
+        /// The Debian packages that bring it, separated by spaces.
+        packages: &'static str,
+    },
+    /// The library is there but gives no OpenGL 3.3 core context.
+    #[error(
+        "{library} gives no OpenGL 3.3 core context ({reason}): install a driver (Debian packages: {packages}), or capture with `--through none`, which needs no OpenGL"
+    )]
+    Context {
+        /// The library that was asked.
+        library: &'static str,
+        /// What it said, for each device that was tried.
+        reason: String,
+        /// The Debian packages that bring a software driver, separated by spaces.
+        packages: &'static str,
+    },
+    /// There is no picture of such a size, or no memory for the one that is read back.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// N is more than the driver's largest texture.
+    #[error(
+        "a picture of {size} × {size} pixels exceeds this OpenGL driver's largest texture, {max} × {max}: choose a smaller size, or capture with `--through none`"
+    )]
+    TextureTooLarge {
+        /// N, the picture's pixels along a side.
+        size: u32,
+        /// The driver's `GL_MAX_TEXTURE_SIZE`.
+        max: u32,
+    },
+    /// The driver says that it is out of memory; Mesa's software renderer also says so of a texture beyond a fixed number of bytes.
+    #[error(
+        "this OpenGL driver has no room for a picture of {size} × {size} pixels: choose a smaller size, or capture with `--through none`"
+    )]
+    Memory {
+        /// N, the picture's pixels along a side.
+        size: u32,
+    },
+    /// The picture is not of the size that the screen was made for.
+    #[error(
+        "a picture of {image} × {image} pixels does not fit a screen made for {screen} × {screen}: make a screen of the picture's size"
+    )]
+    Size {
+        /// The picture's pixels along a side.
+        image: u32,
+        /// The screen's.
+        screen: u32,
+    },
+    /// The driver refused something that every OpenGL 3.3 driver should do.
+    #[error(
+        "the OpenGL driver refuses {what} ({reason}): try another driver, or capture with `--through none`, which needs no OpenGL"
+    )]
+    Refused {
+        /// What it was asked for.
+        what: &'static str,
+        /// What it said, in one line.
+        reason: String,
+    },
+}
+
+impl ScreenError {
+    /// `what` was refused, with the driver's words in one line however many they came in.
+    pub(super) fn refused(what: &'static str, reason: &str) -> ScreenError {
+        ScreenError::Refused {
+            what,
+            reason: reason.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_message_is_one_line_and_says_what_to_do() {
+        let reason = || "because".to_owned();
+        let errors = [
+            ScreenError::Missing {
+                library: "libX.so",
+                reason: reason(),
+                packages: "libx1 libx2",
+            },
+            ScreenError::Context {
+                library: "libX.so",
+                reason: reason(),
+                packages: "libx1 libx2",
+            },
+            ScreenError::TextureTooLarge {
+                size: 9000,
+                max: 8192,
+            },
+            ScreenError::Memory { size: 9000 },
+            ScreenError::refused("the shader", "line 1:\n  no\r\n\tline 2: no\n"),
+        ];
+        for error in errors {
+            let text = error.to_string();
+            assert!(!text.contains(['\n', '\r', '\t']), "{text:?}");
+            assert!(text.contains("`--through none`"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_missing_library_names_its_packages() {
+        let error = ScreenError::Missing {
+            library: "libX.so",
+            reason: "not found".to_owned(),
+            packages: "libx1 libx2",
+        };
+        assert_eq!(
+            error.to_string(),
+            "libX.so cannot be used (not found): install it (Debian packages: libx1 libx2), or capture with `--through none`, which needs no OpenGL"
+        );
+    }
+}

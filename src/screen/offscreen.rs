@@ -1,0 +1,224 @@
+//! A screen without a window: the picture goes the whole way through OpenGL and comes back.
+
+use std::ffi::{CStr, c_void};
+use std::rc::Rc;
+
+use glam::{IVec2, UVec2};
+use glow::HasContext as _;
+
+use super::egl::Egl;
+use super::osmesa::OsMesa;
+use super::{Placement, Screen, ScreenError, check};
+use crate::Image;
+
+/// What makes the context of an [`Offscreen`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Through {
+    /// EGL on a device, without a surface: libEGL.
+    Egl,
+    /// Mesa's software renderer as a library: libOSMesa.
+    OsMesa,
+}
+
+impl Through {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Through::Egl => "egl",
+            Through::OsMesa => "osmesa",
+        }
+    }
+
+    fn open(self) -> Result<Box<dyn Context>, ScreenError> {
+        Ok(match self {
+            Through::Egl => Box::new(Egl::open()?),
+            Through::OsMesa => Box::new(OsMesa::open()?),
+        })
+    }
+}
+
+/// An OpenGL 3.3 core context that needs no window. It is released when dropped.
+pub(super) trait Context {
+    /// Makes it the context of this thread.
+    fn make_current(&self) -> Result<(), ScreenError>;
+    /// Leaves this thread without a context.
+    fn release(&self);
+    /// The address of an OpenGL function; the context is current.
+    fn proc_address(&self, name: &CStr) -> *const c_void;
+}
+
+/// A [`Screen`] in a context and a float framebuffer of its own.
+///
+/// Several may live in one thread. Making, using and dropping one leaves **no** context current: EGL and OSMesa may share one place for
+/// "the current context" without telling each other, so nothing is left there to be mistaken. For the same reason, who has made another
+/// context current on this thread should release it first.
+pub struct Offscreen {
+    // Dropped in this order: what belongs to the context before the context.
+    framebuffer: Framebuffer,
+    screen: Screen,
+    context: Box<dyn Context>,
+}
+
+impl Offscreen {
+    /// A context through `through`, with all that pictures of `size` × `size` pixels need.
+    ///
+    /// # Errors
+    /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else those of [`Screen::new`].
+    pub fn open(through: Through, size: u32) -> Result<Offscreen, ScreenError> {
+        let context = through.open()?;
+        context.make_current()?;
+        let made = Offscreen::make(context.as_ref(), size);
+        context.release();
+        let (screen, framebuffer) = made?;
+        Ok(Offscreen {
+            framebuffer,
+            screen,
+            context,
+        })
+    }
+
+    fn make(context: &dyn Context, size: u32) -> Result<(Screen, Framebuffer), ScreenError> {
+        // SAFETY: the context is current and the addresses are its own functions'.
+        let gl =
+            unsafe { glow::Context::from_loader_function_cstr(|name| context.proc_address(name)) };
+        let gl = Rc::new(gl);
+        let screen = Screen::new(gl.clone(), size)?;
+        let framebuffer = Framebuffer::new(gl, size)?;
+        Ok((screen, framebuffer))
+    }
+
+    /// Uploads `image`, draws it pixel for pixel, and reads back what was drawn: the same samples, bit for bit.
+    ///
+    /// # Errors
+    /// Those of [`Screen::upload`]; [`ScreenError::Image`] where there is no memory for the picture that is read back.
+    pub fn show(&mut self, image: &Image) -> Result<Image, ScreenError> {
+        self.context.make_current()?;
+        let shown = self
+            .screen
+            .upload(image)
+            .and_then(|()| self.framebuffer.read(&self.screen));
+        self.context.release();
+        shown
+    }
+}
+
+impl Drop for Offscreen {
+    fn drop(&mut self) {
+        // For the fields that are dropped next. Where it fails, they had better find no context than another one.
+        if self.context.make_current().is_err() {
+            self.context.release();
+        }
+    }
+}
+
+/// The most pixels of a [`Framebuffer`]: 64 MiB of floats, where a whole picture of the largest size would take 4 GiB.
+const MAX_PIXELS: u32 = 1 << 22;
+
+/// As many rows of 32-bit floats, as wide as the picture, as are drawn and read back at a time.
+///
+/// Red, green, blue and alpha, because OpenGL need not render to floats without alpha.
+struct Framebuffer {
+    gl: Rc<glow::Context>,
+    framebuffer: glow::Framebuffer,
+    renderbuffer: glow::Renderbuffer,
+    size: u32,
+    rows: u32,
+}
+
+impl Framebuffer {
+    fn new(gl: Rc<glow::Context>, size: u32) -> Result<Framebuffer, ScreenError> {
+        // SAFETY: the context is current.
+        let framebuffer = unsafe { gl.create_framebuffer() }
+            .map_err(|reason| ScreenError::refused("a framebuffer", &reason))?;
+        // SAFETY: the context is current.
+        let renderbuffer = unsafe { gl.create_renderbuffer() }
+            .map_err(|reason| ScreenError::refused("a renderbuffer", &reason))?;
+        let framebuffer = Framebuffer {
+            gl,
+            framebuffer,
+            renderbuffer,
+            size,
+            rows: size.min(MAX_PIXELS / size),
+        };
+        framebuffer.allocate()?;
+        Ok(framebuffer)
+    }
+
+    fn allocate(&self) -> Result<(), ScreenError> {
+        let what = "a framebuffer of 32-bit floats";
+        let gl = &self.gl;
+        // SAFETY: the context is current and the names are of it.
+        let status = unsafe {
+            gl.bind_renderbuffer(glow::RENDERBUFFER, Some(self.renderbuffer));
+            gl.renderbuffer_storage(
+                glow::RENDERBUFFER,
+                glow::RGBA32F,
+                self.size as i32,
+                self.rows as i32,
+            );
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer));
+            gl.framebuffer_renderbuffer(
+                glow::FRAMEBUFFER,
+                glow::COLOR_ATTACHMENT0,
+                glow::RENDERBUFFER,
+                Some(self.renderbuffer),
+            );
+            gl.check_framebuffer_status(glow::FRAMEBUFFER)
+        };
+        check(gl, what, self.size)?;
+        if status != glow::FRAMEBUFFER_COMPLETE {
+            let reason = format!("framebuffer status {status:#06x}");
+            return Err(ScreenError::refused(what, &reason));
+        }
+        Ok(())
+    }
+
+    /// What `screen` shows at one pixel of the framebuffer for each of the picture.
+    fn read(&self, screen: &Screen) -> Result<Image, ScreenError> {
+        let (gl, size) = (&self.gl, self.size);
+        let mut image = Image::new(size)?;
+        let band = self.rows as usize * size as usize * 3;
+        let surface = UVec2::new(size, self.rows);
+        let mut placement = Placement {
+            origin: IVec2::ZERO,
+            extent: size,
+        };
+        for samples in image.samples_mut().chunks_mut(band) {
+            let rows = samples.len() / (size as usize * 3);
+            // SAFETY: the context is current. Its pixel-store parameters are as they were made, so that the driver writes
+            // size × rows × 3 floats without a gap, and so many are there.
+            unsafe {
+                gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer));
+                screen.draw(surface, placement);
+                gl.read_pixels(
+                    0,
+                    0,
+                    size as i32,
+                    rows as i32,
+                    glow::RGB,
+                    glow::FLOAT,
+                    glow::PixelPackData::Slice(Some(as_bytes_mut(samples))),
+                );
+            }
+            placement.origin.y -= self.rows as i32;
+        }
+        check(gl, "to draw the picture and read it back", size)?;
+        Ok(image)
+    }
+}
+
+impl Drop for Framebuffer {
+    fn drop(&mut self) {
+        // SAFETY: both names were made here and nothing else deletes them.
+        unsafe {
+            self.gl.delete_framebuffer(self.framebuffer);
+            self.gl.delete_renderbuffer(self.renderbuffer);
+        }
+    }
+}
+
+/// The bytes of `samples`, as glow wants them.
+fn as_bytes_mut(samples: &mut [f32]) -> &mut [u8] {
+    // SAFETY: the same memory for the same time; any bytes make a float and a byte has no alignment.
+    unsafe { std::slice::from_raw_parts_mut(samples.as_mut_ptr().cast(), size_of_val(samples)) }
+}

@@ -1,0 +1,84 @@
+//! The shader program that draws the picture.
+
+use std::rc::Rc;
+
+use glow::HasContext as _;
+
+use super::ScreenError;
+
+/// The linked program and the places of its uniforms.
+pub(super) struct Program {
+    gl: Rc<glow::Context>,
+    pub(super) name: glow::Program,
+    pub(super) origin: Option<glow::UniformLocation>,
+    pub(super) extent: Option<glow::UniformLocation>,
+}
+
+impl Program {
+    /// Compiles and links; `gl`'s context is current.
+    pub(super) fn new(gl: Rc<glow::Context>) -> Result<Program, ScreenError> {
+        // SAFETY: as for every call in this folder, `gl`'s functions are loaded and its context is current on this thread.
+        let name = unsafe { gl.create_program() }
+            .map_err(|reason| ScreenError::refused("a shader program", &reason))?;
+        let mut program = Program {
+            gl,
+            name,
+            origin: None,
+            extent: None,
+        };
+        program.attach(
+            glow::VERTEX_SHADER,
+            "the vertex shader",
+            include_str!("picture.vert"),
+        )?;
+        program.attach(
+            glow::FRAGMENT_SHADER,
+            "the fragment shader",
+            include_str!("picture.frag"),
+        )?;
+        program.link()?;
+        Ok(program)
+    }
+
+    fn attach(&self, kind: u32, what: &'static str, source: &str) -> Result<(), ScreenError> {
+        let gl = &self.gl;
+        // SAFETY: the context is current; the shader is this one's own, and once marked deleted lives on only while attached.
+        unsafe {
+            let shader = gl
+                .create_shader(kind)
+                .map_err(|reason| ScreenError::refused(what, &reason))?;
+            gl.shader_source(shader, source);
+            gl.compile_shader(shader);
+            let compiled = if gl.get_shader_compile_status(shader) {
+                gl.attach_shader(self.name, shader);
+                Ok(())
+            } else {
+                Err(ScreenError::refused(what, &gl.get_shader_info_log(shader)))
+            };
+            gl.delete_shader(shader);
+            compiled
+        }
+    }
+
+    fn link(&mut self) -> Result<(), ScreenError> {
+        let gl = &self.gl;
+        // SAFETY: the context is current and the program's name is of it.
+        unsafe {
+            gl.link_program(self.name);
+            if !gl.get_program_link_status(self.name) {
+                let log = gl.get_program_info_log(self.name);
+                return Err(ScreenError::refused("to link the shader program", &log));
+            }
+            self.origin = gl.get_uniform_location(self.name, "origin");
+            self.extent = gl.get_uniform_location(self.name, "extent");
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // SAFETY: the program was made here and nothing else deletes it.
+        unsafe { self.gl.delete_program(self.name) };
+    }
+}

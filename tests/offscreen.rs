@@ -1,0 +1,258 @@
+//! A picture that goes through OpenGL without a window comes back bit for bit, whatever library made the context.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops at the first surprise"
+)]
+#![allow(
+    clippy::explicit_write,
+    reason = "the test harness hides what `eprintln!` says in a test that passes"
+)]
+
+use std::ffi::c_void;
+use std::io::Write as _;
+
+use firsthit::screen::{Offscreen, ScreenError, Through};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use glutin::api::egl::device::Device;
+use glutin::api::egl::display::Display;
+
+const WAYS: [Through; 2] = [Through::Egl, Through::OsMesa];
+
+/// An offscreen for pictures of this size, or `None` where the library is not installed: never so in CI.
+fn open(through: Through, size: u32) -> Option<Offscreen> {
+    match Offscreen::open(through, size) {
+        Ok(offscreen) => Some(offscreen),
+        Err(error @ ScreenError::Missing { .. }) if std::env::var_os("CI").is_none() => {
+            writeln!(std::io::stderr(), "skipped: {error}").unwrap();
+            None
+        }
+        Err(error) => panic!("{}: {error}", through.name()),
+    }
+}
+
+/// A picture whose sample `i` has the bits `bits(i)`.
+fn image(size: u32, bits: impl Fn(u32) -> u32) -> Image {
+    let mut image = Image::new(size).unwrap();
+    for (i, sample) in image.samples_mut().iter_mut().enumerate() {
+        *sample = f32::from_bits(bits(i as u32));
+    }
+    image
+}
+
+/// Bits that no two samples nearby share; all kinds of floats occur.
+fn scattered(seed: u32) -> impl Fn(u32) -> u32 {
+    move |i| (i.wrapping_add(seed)).wrapping_mul(0x9E37_79B1)
+}
+
+#[track_caller]
+fn assert_same_bits(shown: &Image, image: &Image, what: &str) {
+    assert_eq!(shown.size(), image.size(), "{what}");
+    let pairs = shown.samples().iter().zip(image.samples());
+    for (i, (shown, sample)) in pairs.enumerate() {
+        let (shown, sample) = (shown.to_bits(), sample.to_bits());
+        assert_eq!(
+            shown, sample,
+            "{what}: sample {i}: {shown:#010x} for {sample:#010x}"
+        );
+    }
+}
+
+#[test]
+fn every_stage_comes_back_bit_for_bit() {
+    let scene = Scene::builtin();
+    let mut tracer = Tracer::new(Kernel::default(), 0).unwrap();
+    for through in WAYS {
+        for size in [1, 7, 499, 500] {
+            let Some(mut offscreen) = open(through, size) else {
+                break;
+            };
+            let mut image = Image::new(size).unwrap();
+            for stage in Stage::ALL {
+                tracer.trace(&scene, stage, 0.3, &mut image).unwrap();
+                let shown = offscreen.show(&image).unwrap();
+                assert_same_bits(
+                    &shown,
+                    &image,
+                    &format!("{} {stage} {size}", through.name()),
+                );
+            }
+        }
+    }
+}
+
+/// Both zeros, the smallest and largest of every kind of float, and NaNs quiet and signalling, of either sign, with payloads.
+const SPECIAL: [u32; 24] = [
+    0x0000_0000,
+    0x8000_0000,
+    0x0000_0001,
+    0x8000_0001,
+    0x0000_0700,
+    0x007F_FFFF,
+    0x807F_FFFF,
+    0x0080_0000,
+    0x8080_0000,
+    0x3F80_0000,
+    0x3F80_0001,
+    0x3F7F_FFFF,
+    0xBF80_0000,
+    0x7F7F_FFFF,
+    0xFF7F_FFFF,
+    0x7F80_0000,
+    0xFF80_0000,
+    0x7FC0_0000,
+    0xFFC0_0000,
+    0x7FC1_2345,
+    0x7FFF_FFFF,
+    0x7F80_0001,
+    0xFFA5_5AA5,
+    0x7FBF_FFFF,
+];
+
+#[test]
+fn every_kind_of_float_comes_back_bit_for_bit() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 64) else {
+            continue;
+        };
+        // Shifted by one from row to row, so that each value gets into each channel.
+        let special = image(64, |i| SPECIAL[((i + i / 192) % 24) as usize]);
+        let shown = offscreen.show(&special).unwrap();
+        assert_same_bits(&shown, &special, through.name());
+    }
+}
+
+#[test]
+fn no_sample_of_an_earlier_picture_stays() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 33) else {
+            continue;
+        };
+        let same = |_| 0x3F80_0000;
+        let pictures = [
+            image(33, scattered(0)),
+            image(33, same),
+            image(33, scattered(1)),
+            image(33, scattered(0)),
+        ];
+        for picture in &pictures {
+            let shown = offscreen.show(picture).unwrap();
+            assert_same_bits(&shown, picture, through.name());
+        }
+    }
+}
+
+#[test]
+fn a_picture_too_large_for_one_framebuffer_comes_back_in_bands() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 2501) else {
+            continue;
+        };
+        let picture = image(2501, scattered(0));
+        let shown = offscreen.show(&picture).unwrap();
+        assert_same_bits(&shown, &picture, through.name());
+    }
+}
+
+#[test]
+fn several_live_in_one_thread_and_die_in_any_order() {
+    for order in [[0, 1, 2, 3], [3, 2, 1, 0], [1, 3, 0, 2]] {
+        let mut alive: Vec<_> = [
+            (Through::Egl, 20),
+            (Through::OsMesa, 30),
+            (Through::Egl, 30),
+            (Through::OsMesa, 20),
+        ]
+        .into_iter()
+        .map(|(through, size)| open(through, size).map(|offscreen| (offscreen, size)))
+        .collect();
+        for dies in order {
+            // Twice: the second time, another one has been current since.
+            for seed in 0..2 {
+                for (i, (offscreen, size)) in alive.iter_mut().flatten().enumerate() {
+                    let picture = image(*size, scattered(seed * 4 + i as u32));
+                    let shown = offscreen.show(&picture).unwrap();
+                    assert_same_bits(&shown, &picture, &format!("{i} of {order:?}"));
+                }
+            }
+            alive[dies] = None;
+        }
+    }
+}
+
+/// Whether this thread has a context of this kind.
+fn is_any_current(through: Through) -> bool {
+    match through {
+        Through::Egl => {
+            let device = Device::query_devices().unwrap().next().unwrap();
+            // SAFETY: no native display is passed, and asking for the current context has no conditions.
+            let current = unsafe {
+                let display = Display::with_device(&device, None).unwrap();
+                display.egl().GetCurrentContext()
+            };
+            !current.is_null()
+        }
+        Through::OsMesa => {
+            // SAFETY: the library is loaded already, and this is the function's type in GL/osmesa.h.
+            let current = unsafe {
+                let library = libloading::Library::new("libOSMesa.so.8").unwrap();
+                let get_current = library
+                    .get::<unsafe extern "C" fn() -> *const c_void>(b"OSMesaGetCurrentContext")
+                    .unwrap();
+                get_current()
+            };
+            !current.is_null()
+        }
+    }
+}
+
+#[test]
+fn no_context_is_left_current() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 5) else {
+            continue;
+        };
+        assert!(!is_any_current(through), "{}: opened", through.name());
+        offscreen.show(&image(5, scattered(0))).unwrap();
+        assert!(!is_any_current(through), "{}: shown", through.name());
+        offscreen.show(&image(6, scattered(0))).unwrap_err();
+        assert!(!is_any_current(through), "{}: refused", through.name());
+        drop(offscreen);
+        assert!(!is_any_current(through), "{}: dropped", through.name());
+        Offscreen::open(through, 0).err().unwrap();
+        assert!(!is_any_current(through), "{}: not opened", through.name());
+    }
+}
+
+#[test]
+fn a_picture_of_another_size_is_refused_and_the_next_one_is_not() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 5) else {
+            continue;
+        };
+        for size in [4, 6] {
+            match offscreen.show(&image(size, scattered(0))) {
+                Err(ScreenError::Size { image, screen: 5 }) => assert_eq!(image, size),
+                other => panic!("{}: {other:?}", through.name()),
+            }
+        }
+        let picture = image(5, scattered(0));
+        let shown = offscreen.show(&picture).unwrap();
+        assert_same_bits(&shown, &picture, through.name());
+    }
+}
+
+#[test]
+fn a_size_that_no_picture_has_is_refused() {
+    for through in WAYS {
+        if open(through, 1).is_none() {
+            continue;
+        }
+        for size in [0, 16_385, u32::MAX] {
+            let error = Offscreen::open(through, size).err().unwrap();
+            assert!(matches!(error, ScreenError::Image(_)), "{error}");
+        }
+    }
+}
