@@ -1,6 +1,15 @@
 //! The picture: N × N pixels of three linear 32-bit floats.
 
+mod animation;
+mod exr;
+mod png;
+mod save;
+mod whole_file;
+
 use std::fmt;
+
+pub use animation::Animation;
+pub use save::{Format, SaveError};
 
 /// The largest number of pixels along a side.
 pub const MAX_SIZE: u32 = 16384;
@@ -70,6 +79,25 @@ impl Image {
             self.samples[first + 2],
         ])
     }
+
+    /// The rows from the top of the picture to the bottom, as files store them: 3 N floats each.
+    fn rows_from_top(&self) -> impl Iterator<Item = &[f32]> {
+        self.samples.chunks_exact(3 * self.size as usize).rev()
+    }
+}
+
+/// The byte that a display of 8 bits shows for `sample`: round(255 · clamp(sample, 0, 1)), computed in f32, ties to even; 0 for a NaN.
+///
+/// It is what OpenGL writes into an RGBA8 framebuffer, and what a PNG holds.
+///
+/// ```
+/// use firsthit::image::display_byte;
+/// assert_eq!(display_byte(0.5), 128);
+/// assert_eq!(display_byte(7.0), 255);
+/// assert_eq!(display_byte(f32::NAN), 0);
+/// ```
+pub fn display_byte(sample: f32) -> u8 {
+    (sample.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
 }
 
 impl fmt::Debug for Image {

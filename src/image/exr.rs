@@ -1,0 +1,29 @@
+//! OpenEXR: three channels of 32-bit floats, every sample bit for bit.
+
+use std::io;
+
+use ::exr::error::Error;
+use ::exr::image::write::WritableImage;
+use ::exr::image::{Encoding, Image as Part, SpecificChannels};
+use ::exr::math::Vec2;
+
+use super::Image;
+use super::whole_file::Output;
+
+/// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib, rows in order: the blocks are compressed on all cores, and the
+/// bytes do not depend on how many there are.
+pub(super) fn write(image: &Image, output: &mut Output) -> io::Result<()> {
+    let size = image.size() as usize;
+    let samples = image.samples();
+    let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {
+        let first = ((size - 1 - row_from_top) * size + column) * 3;
+        (samples[first], samples[first + 1], samples[first + 2])
+    });
+    Part::from_encoded_channels((size, size), Encoding::SMALL_LOSSLESS, channels)
+        .write()
+        .to_buffered(output)
+        .map_err(|error| match error {
+            Error::Io(error) => error,
+            other => io::Error::other(other),
+        })
+}

@@ -1,0 +1,145 @@
+//! A file that appears whole or not at all.
+//!
+//! The bytes go to a temporary name in the same folder, which is renamed at the end: whoever looks at the final name finds the old file or the new one,
+//! never a part. The temporary file is removed on every error; only a process that is killed leaves it behind, as `.firsthit-` and some letters.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use tempfile::TempPath;
+
+use super::SaveError;
+
+/// The name of a file that is still being written through its [`Output`].
+pub(super) struct WholeFile {
+    path: PathBuf,
+    target: PathBuf,
+    temporary: TempPath,
+    failure: Failure,
+}
+
+/// What a [`WholeFile`] holds so far, to be written on.
+pub(super) struct Output {
+    file: BufWriter<File>,
+    failure: Failure,
+}
+
+/// The first write that failed. An encoder may drop such an error, or wrap it until its kind is lost; a file is only whole if there was none.
+type Failure = Arc<OnceLock<io::Error>>;
+
+impl WholeFile {
+    /// Starts the file that is to be named `path`, with the permissions that any new file gets.
+    ///
+    /// A symbolic link is followed, and what it points to is replaced; one that points to nothing is replaced itself.
+    pub(super) fn create(path: &Path) -> Result<(WholeFile, Output), SaveError> {
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if let Ok(metadata) = fs::metadata(&target) {
+            // Renaming would put a file in the place of a device, and would not ask whether the old file may be written.
+            if !metadata.is_file() {
+                return Err(SaveError::NotAFile(path.to_owned()));
+            }
+            if metadata.permissions().readonly() {
+                return Err(SaveError::ReadOnly(path.to_owned()));
+            }
+        }
+        let folder = target.parent().unwrap_or(Path::new(""));
+        let (file, temporary) = tempfile::Builder::new()
+            .prefix(".firsthit-")
+            .make_in(folder, |name| {
+                OpenOptions::new().write(true).create_new(true).open(name)
+            })
+            .map_err(|reason| SaveError::write(path, reason))?
+            .into_parts();
+        let failure = Failure::default();
+        let output = Output {
+            file: BufWriter::new(file),
+            failure: Arc::clone(&failure),
+        };
+        let path = path.to_owned();
+        Ok((
+            WholeFile {
+                path,
+                target,
+                temporary,
+                failure,
+            },
+            output,
+        ))
+    }
+
+    /// Gives the file its name, if it was `written` and no write failed.
+    pub(super) fn finish(self, written: io::Result<()>) -> Result<(), SaveError> {
+        written.map_err(|error| self.error(error))?;
+        if let Some(failure) = self.failure.get() {
+            return Err(SaveError::write(&self.path, copy(failure)));
+        }
+        self.temporary
+            .persist(&self.target)
+            .map_err(|failure| SaveError::write(&self.path, failure.error))
+    }
+
+    /// Why the file cannot be written: the first write that failed, else the encoder's own `error`.
+    pub(super) fn error(&self, error: io::Error) -> SaveError {
+        SaveError::write(&self.path, self.failure.get().map_or(error, copy))
+    }
+}
+
+impl Output {
+    fn watch<T>(&self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &result
+            && error.kind() != io::ErrorKind::Interrupted
+        {
+            // Later failures follow from the first.
+            let _ = self.failure.set(copy(error));
+        }
+        result
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes);
+        self.watch(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.file.flush();
+        self.watch(flushed)
+    }
+}
+
+impl Seek for Output {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        let sought = self.file.seek(position);
+        self.watch(sought)
+    }
+}
+
+fn copy(error: &io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error.kind().into(),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_write_that_failed_is_never_forgotten() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let (file, mut output) = WholeFile::create(&path).unwrap();
+        // Open for reading only: every write fails.
+        output.file = BufWriter::with_capacity(0, File::open(&file.temporary).unwrap());
+        let reason = output.write(b"lost").unwrap_err();
+        drop(output);
+        let error = file.finish(Ok(())).unwrap_err();
+        assert!(error.to_string().contains(&reason.to_string()), "{error}");
+        assert!(folder.path().read_dir().unwrap().next().is_none());
+    }
+}
