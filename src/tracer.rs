@@ -4,6 +4,7 @@
 //! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number.
 
 mod decision;
+mod explain;
 mod ladder;
 mod line;
 mod number;
@@ -65,6 +66,16 @@ pub enum TraceError {
     /// α is a NaN or an infinity.
     #[error("α = {0} is not an angle: give a finite number of radians")]
     Angle(f64),
+    /// The pixel is not in the picture.
+    #[error("column {column}, row {row} is not in a picture of {size} × {size} pixels: both count from 0 to {}", size.saturating_sub(1))]
+    Pixel {
+        /// Its column, counted from the left.
+        column: u32,
+        /// Its row, counted from the bottom.
+        row: u32,
+        /// N.
+        size: u32,
+    },
     /// The worker threads could not be started.
     #[error("{threads} threads cannot be started: {source}; ask for fewer")]
     Threads {
@@ -144,6 +155,49 @@ impl Tracer {
         let mut decisions = vec![Decision::Background; image.samples().len() / 3];
         self.trace_frame(scene, stage, alpha, image, Some(&mut decisions))?;
         Ok(decisions)
+    }
+
+    /// One pixel, worked through for a person to read: the rays, what they meet and what that beat, the decisions and the
+    /// arithmetic that settled them, each term of equation 4-1, the samples. It comes from the code that traces.
+    ///
+    /// # Errors
+    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of `size` has no such pixel.
+    pub fn explain(
+        &self,
+        scene: &Scene,
+        stage: Stage,
+        alpha: f64,
+        size: u32,
+        (column, row): (u32, u32),
+    ) -> Result<String, TraceError> {
+        if !alpha.is_finite() {
+            return Err(TraceError::Angle(alpha));
+        }
+        if column >= size || row >= size {
+            return Err(TraceError::Pixel { column, row, size });
+        }
+        let (text, rung) = match self.kernel {
+            Kernel::Exact => {
+                Ladder::new(scene, stage, alpha, size, Rung::Double).explain(column, row)
+            }
+            Kernel::Fast => Plain::<f32>::new(scene, stage, alpha, size).explain(column, row),
+            Kernel::Double => Plain::<f64>::new(scene, stage, alpha, size).explain(column, row),
+            Kernel::Reference => {
+                Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble).explain(column, row)
+            }
+        };
+        let by = match (self.kernel, rung) {
+            (Kernel::Fast, _) => "f32",
+            (Kernel::Double, _) => "f64",
+            (_, Rung::Double) => "f64 with a bound on its error",
+            (_, Rung::DoubleDouble) => "double-doubles with a bound on their error",
+            (_, Rung::Arbitrary) => "arbitrary precision",
+        };
+        Ok(format!(
+            "pixel        column {column}, row {row} from the bottom, of {size} × {size}\n\
+             frame        stage {stage}, α = {alpha:?}\n{text}decided by   {by} (kernel {})\n",
+            self.kernel.name()
+        ))
     }
 
     fn trace_frame(

@@ -25,6 +25,9 @@ pub(super) enum Rung {
 pub(super) trait Pixels: Sync {
     /// The pixel at `column` and `row`, and what settled it.
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung);
+
+    /// The same pixel, worked through.
+    fn explain(&self, column: u32, row: u32) -> (String, Rung);
 }
 
 /// A kernel of one number that always answers.
@@ -44,6 +47,11 @@ impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
         let Ok(pixel) = self.0.pixel(column, row);
         (pixel, Rung::Double)
+    }
+
+    fn explain(&self, column: u32, row: u32) -> (String, Rung) {
+        let Ok(text) = self.0.explain(column, row);
+        (text, Rung::Double)
     }
 }
 
@@ -97,37 +105,68 @@ fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
     Frame::new(sin, cos, size)
 }
 
-impl Pixels for Ladder<'_> {
-    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
-        if let Some(Ok(pixel)) = self
+impl Ladder<'_> {
+    /// The answer of the cheapest arithmetic that has one, and which that was.
+    fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
+        if let Some(Ok(answer)) = self
             .bounded
             .as_ref()
-            .map(|picture| picture.pixel(column, row))
+            .map(|picture| question.put_to(picture))
         {
-            return (pixel, Rung::Double);
+            return (answer, Rung::Double);
         }
         let double_double = self.double_double.get_or_init(|| {
-            Picture::new(
-                self.scene,
-                self.stage,
-                &frame(self.alpha, self.size),
-                self.size,
-                &self.crossings,
-            )
-            .ok()
+            let frame = frame(self.alpha, self.size);
+            Picture::new(self.scene, self.stage, &frame, self.size, &self.crossings).ok()
         });
-        if let Some(Ok(pixel)) = double_double
+        if let Some(Ok(answer)) = double_double
             .as_ref()
-            .map(|picture| picture.pixel(column, row))
+            .map(|picture| question.put_to(picture))
         {
-            return (pixel, Rung::DoubleDouble);
+            return (answer, Rung::DoubleDouble);
         }
         Expression::session(|| {
             let frame = frame::<Expression>(self.alpha, self.size);
             let Ok(picture) =
                 Picture::new(self.scene, self.stage, &frame, self.size, &self.crossings);
-            let Ok(pixel) = picture.pixel(column, row);
-            (pixel, Rung::Arbitrary)
+            let Ok(answer) = question.put_to(&picture);
+            (answer, Rung::Arbitrary)
         })
+    }
+}
+
+/// What a picture in any number can be asked.
+trait Question {
+    type Answer;
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
+}
+
+/// The pixel at a column and a row.
+struct PixelAt(u32, u32);
+
+impl Question for PixelAt {
+    type Answer = Pixel;
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Pixel, R::Doubt> {
+        picture.pixel(self.0, self.1)
+    }
+}
+
+/// The same pixel, worked through.
+struct Explain(u32, u32);
+
+impl Question for Explain {
+    type Answer = String;
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<String, R::Doubt> {
+        picture.explain(self.0, self.1)
+    }
+}
+
+impl Pixels for Ladder<'_> {
+    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
+        self.settle(&PixelAt(column, row))
+    }
+
+    fn explain(&self, column: u32, row: u32) -> (String, Rung) {
+        self.settle(&Explain(column, row))
     }
 }

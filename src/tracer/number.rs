@@ -52,6 +52,9 @@ pub(crate) trait Real:
     /// Rounded to the nearest f32, ties to even; a zero is +0.
     fn to_sample(self) -> Result<f32, Self::Doubt>;
 
+    /// About its value, for a person to read.
+    fn to_f64(self) -> f64;
+
     /// Its square.
     fn squared(self) -> Self {
         self * self
@@ -90,6 +93,10 @@ impl Real for f64 {
         // + 0 turns −0 into +0 and changes nothing else.
         Ok(self as f32 + 0.0)
     }
+
+    fn to_f64(self) -> f64 {
+        self
+    }
 }
 
 impl Real for f32 {
@@ -122,6 +129,10 @@ impl Real for f32 {
 
     fn to_sample(self) -> Result<f32, Infallible> {
         Ok(self + 0.0)
+    }
+
+    fn to_f64(self) -> f64 {
+        self.into()
     }
 }
 

@@ -14,26 +14,27 @@ use crate::stage::Stage;
 
 /// Everything about a frame that its pixels share.
 pub(super) struct Picture<'a, R> {
-    scene: &'a Scene,
-    stage: Stage,
-    size: u32,
-    view: View<R>,
-    floor: Option<Floor<R>>,
+    pub(super) scene: &'a Scene,
+    pub(super) stage: Stage,
+    pub(super) size: u32,
+    pub(super) frame: Frame<R>,
+    pub(super) view: View<R>,
+    pub(super) floor: Option<Floor<R>>,
 }
 
 /// The surface, from stage 5 on.
-struct Floor<R> {
-    surface: Surface<R>,
+pub(super) struct Floor<R> {
+    pub(super) surface: Surface<R>,
     color: Vector<R>,
     /// (N/2) · height.
     height_in_pixels: R,
-    mirror: Option<Mirror<R>>,
+    pub(super) mirror: Option<Mirror<R>>,
 }
 
 /// What the surface mirrors, from stage 6 on.
-struct Mirror<R> {
-    view: View<R>,
-    reflectance: R,
+pub(super) struct Mirror<R> {
+    pub(super) view: View<R>,
+    pub(super) reflectance: R,
 }
 
 /// Whether anything is mirrored in this stage.
@@ -74,6 +75,7 @@ impl<'a, R: Real> Picture<'a, R> {
             scene,
             stage,
             size,
+            frame: *frame,
             view: view(false)?,
             floor,
         })
@@ -99,7 +101,7 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// The whole line of sight through a pixel.
-    fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
+    pub(super) fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
         let half = f64::from(self.size) / 2.0;
         let origin = [f64::from(column) - half, f64::from(row) - half, half]
             .map(|coordinate| R::exact(3.0 * coordinate));
@@ -154,18 +156,12 @@ impl<'a, R: Real> Picture<'a, R> {
         let ray = self.eye_ray(column, row);
         let hit = self.view.first_hit(&ray, Reach::Line, Solids::All)?;
         if let Some(floor) = &self.floor {
-            let depth =
-                R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
+            let (depth, point) = self.surface_point(floor, &ray, row);
             let hides = || match &hit {
                 // Of a solid and the surface at the same depth, the solid is seen.
                 Some((_, hit)) if hit.support == floor.surface.support => Ok(false),
                 Some((_, hit)) => (hit.depth - depth).sign().map(Ordering::is_gt),
                 None => Ok(true),
-            };
-            // Its height is known without any rounding.
-            let point = Vector {
-                y: floor.surface.height,
-                ..ray.at(depth)
             };
             let contains = || floor.surface.contains(point);
             if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
@@ -179,6 +175,23 @@ impl<'a, R: Real> Picture<'a, R> {
             }
             None => self.background(),
         })
+    }
+
+    /// Where an eye ray meets the surface's plane: its parameter, and the point, whose height is known without any rounding.
+    pub(super) fn surface_point(
+        &self,
+        floor: &Floor<R>,
+        ray: &Line<R>,
+        row: u32,
+    ) -> (R, Vector<R>) {
+        let depth = R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
+        (
+            depth,
+            Vector {
+                y: floor.surface.height,
+                ..ray.at(depth)
+            },
+        )
     }
 
     /// The surface where it is seen: in shadow, mirroring, or plain.
@@ -239,7 +252,7 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// The colour c of a solid.
-    fn color(&self, solid: usize) -> Vector<R> {
+    pub(super) fn color(&self, solid: usize) -> Vector<R> {
         let spheres = self.scene.spheres();
         Vector::exact(match spheres.get(solid) {
             Some(sphere) => sphere.color,

@@ -1,5 +1,7 @@
 //! Equation 4-1: ambient, diffuse and specular light at a point of a solid.
 
+use glam::DVec3;
+
 use super::line::Direction;
 use super::number::Real;
 use super::vector::Vector;
@@ -57,20 +59,53 @@ impl<R: Real> Shading<R> {
         self.ambient
     }
 
-    /// L of equation 4-1 where the outward normal is `normal`, of length `length`.
-    pub(super) fn lit(&self, normal: Vector<R>, length: R) -> Result<Vector<R>, R::Doubt> {
-        let mut sum = self.ambient;
-        let cosine = normal.dot(self.to_light.vector);
-        if cosine.sign()?.is_gt() {
-            sum = sum + self.diffuse * (cosine / (length * self.to_light_length));
-        }
-        if let Some(halfway) = self.halfway {
-            // 1 − n·h = |n − h|²/2 for unit vectors: small, and known to a small relative error, just where the
-            // highlight is bright.
-            let gap = normal.divided_by(length) - halfway;
-            let one_minus = gap.squared_length() * R::exact(0.5);
-            sum = sum + self.specular * one_minus.one_minus_to_the(self.exponent);
-        }
-        Ok(sum)
+    /// h, of length 1; `None` where there is no highlight.
+    pub(super) fn halfway(&self) -> Option<Vector<R>> {
+        self.halfway
     }
+
+    /// The terms of equation 4-1 where the outward normal is `normal`, of length `length`.
+    pub(super) fn terms(&self, normal: Vector<R>, length: R) -> Result<Terms<R>, R::Doubt> {
+        let none = Vector::exact(DVec3::ZERO);
+        let cosine = normal.dot(self.to_light.vector);
+        let normal_light = cosine / (length * self.to_light_length);
+        let diffuse = if cosine.sign()?.is_gt() {
+            self.diffuse * normal_light
+        } else {
+            none
+        };
+        // 1 − n·h = |n − h|²/2 for unit vectors: small, and known to a small relative error, just where the highlight is
+        // bright.
+        let one_minus = self
+            .halfway
+            .map(|halfway| (normal.divided_by(length) - halfway).squared_length() * R::exact(0.5));
+        let specular = match one_minus {
+            Some(one_minus) => self.specular * one_minus.one_minus_to_the(self.exponent),
+            None => none,
+        };
+        Ok(Terms {
+            normal_light,
+            one_minus_normal_halfway: one_minus,
+            diffuse,
+            specular,
+        })
+    }
+
+    /// L of equation 4-1 there.
+    pub(super) fn lit(&self, normal: Vector<R>, length: R) -> Result<Vector<R>, R::Doubt> {
+        let terms = self.terms(normal, length)?;
+        Ok(self.ambient + terms.diffuse + terms.specular)
+    }
+}
+
+/// Equation 4-1 but for its ambient term, which is the same everywhere.
+pub(super) struct Terms<R> {
+    /// n·l.
+    pub(super) normal_light: R,
+    /// 1 − n·h; `None` where there is no h.
+    pub(super) one_minus_normal_halfway: Option<R>,
+    /// k_d I max(0, n·l).
+    pub(super) diffuse: Vector<R>,
+    /// k_s I max(0, n·h)ⁿ.
+    pub(super) specular: Vector<R>,
 }

@@ -238,44 +238,87 @@ impl<R: Real> View<R> {
         solids: Solids,
     ) -> Result<Option<(usize, Hit<R>)>, R::Doubt> {
         let mut first: Option<(usize, Hit<R>)> = None;
-        let mut meet = |solid: usize, hit: Option<Hit<R>>| -> Result<(), R::Doubt> {
-            if let Some(hit) = hit {
-                let nearer = match &first {
-                    Some((_, other)) if other.support == hit.support => false,
-                    Some((_, other)) => (hit.depth - other.depth).sign()?.is_lt(),
-                    None => true,
-                };
-                if nearer {
-                    first = Some((solid, hit));
-                }
+        self.each_hit(ray, reach, solids, |solid, hit| {
+            let nearer = match &first {
+                Some((_, other)) if other.support == hit.support => false,
+                Some((_, other)) => (hit.depth - other.depth).sign()?.is_lt(),
+                None => true,
+            };
+            if nearer {
+                first = Some((solid, hit));
             }
             Ok(())
-        };
+        })?;
+        Ok(first)
+    }
+
+    fn each_hit(
+        &self,
+        ray: &Line<R>,
+        reach: Reach,
+        solids: Solids,
+        mut meet: impl FnMut(usize, Hit<R>) -> Result<(), R::Doubt>,
+    ) -> Result<(), R::Doubt> {
         if solids != Solids::Tetrahedra {
             for (solid, sphere) in self.spheres.iter().enumerate() {
                 if reach == Reach::Line || sphere.is_ahead(ray)? {
-                    meet(solid, sphere.first_hit(ray)?)?;
+                    sphere
+                        .first_hit(ray)?
+                        .map_or(Ok(()), |hit| meet(solid, hit))?;
                 }
             }
         }
         if solids != Solids::Spheres {
             for (solid, t) in (self.spheres.len()..).zip(&self.tetrahedra) {
                 if reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)? {
-                    meet(solid, t.solid.first_hit(&t.from_eye, ray)?)?;
+                    t.solid
+                        .first_hit(&t.from_eye, ray)?
+                        .map_or(Ok(()), |hit| meet(solid, hit))?;
                 }
             }
         }
-        Ok(first)
+        Ok(())
     }
 
-    /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the light.
-    pub(super) fn is_shadowed(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+    /// Every solid that takes part and that the ray meets, in the scene's order.
+    pub(super) fn hits(
+        &self,
+        ray: &Line<R>,
+        reach: Reach,
+        solids: Solids,
+    ) -> Result<Vec<(usize, Hit<R>)>, R::Doubt> {
+        let mut all = Vec::new();
+        self.each_hit(ray, reach, solids, |solid, hit| {
+            all.push((solid, hit));
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// Every solid that stands between the ray's origin and the light.
+    pub(super) fn shadowers(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
+        let mut all = Vec::new();
+        for (solid, ahead) in self.each_ahead(ray).enumerate() {
+            if ahead? {
+                all.push(solid);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Whether each solid in turn stands between the ray's origin, which is in no solid's interior, and the light.
+    fn each_ahead(&self, ray: &Line<R>) -> impl Iterator<Item = Result<bool, R::Doubt>> {
         let spheres = self.spheres.iter().map(|sphere| sphere.is_ahead(ray));
-        let tetrahedra = self
-            .tetrahedra
-            .iter()
-            .map(|t| t.solid.is_ahead(&t.from_light, ray));
-        any(spheres.chain(tetrahedra))
+        spheres.chain(
+            self.tetrahedra
+                .iter()
+                .map(|t| t.solid.is_ahead(&t.from_light, ray)),
+        )
+    }
+
+    /// Whether any does.
+    pub(super) fn is_shadowed(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        any(self.each_ahead(ray))
     }
 
     /// The ray toward the light from a point of a sphere or plane, outward.

@@ -175,4 +175,8 @@ impl Real for Bounded {
         let error = (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
         round_enclosure((self.value - error) as f32, (self.value + error) as f32).ok_or(Doubt)
     }
+
+    fn to_f64(self) -> f64 {
+        self.value
+    }
 }

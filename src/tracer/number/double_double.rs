@@ -336,6 +336,10 @@ impl Real for DoubleDouble {
         });
         round_enclosure(ends[0], ends[1]).ok_or(Doubt)
     }
+
+    fn to_f64(self) -> f64 {
+        self.high
+    }
 }
 
 /// high + low, where high is the f64 nearest to it, rounded to the nearest f32, ties to even.

@@ -393,4 +393,9 @@ impl Real for Expression {
                 None => 0.0,
             }))
     }
+
+    fn to_f64(self) -> f64 {
+        self.ask(|interval| Some(interval.low.to_f64().value()))
+            .unwrap_or(f64::NAN)
+    }
 }

@@ -1,0 +1,407 @@
+//! One pixel, worked through: the text of `firsthit explain` and of the viewer's inspector.
+//!
+//! Every number in it comes from the functions that trace, with the arithmetic that settled the pixel; only for printing are
+//! they turned back from view space and shortened to nine digits.
+
+use std::fmt::{self, Write as _};
+
+use super::decision::{Decision, Seen};
+use super::line::{Hit, Line};
+use super::number::Real;
+use super::pixel::Picture;
+use super::vector::Vector;
+use super::view::{Reach, Solids, View};
+use crate::image::display_byte;
+use crate::stage::Stage;
+
+/// A number with nine significant digits.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.0.abs();
+        if magnitude == 0.0 || (1e-4..1e9).contains(&magnitude) {
+            let digits = if magnitude == 0.0 {
+                0
+            } else {
+                (8 - magnitude.log10().floor() as i32).max(0) as usize
+            };
+            let text = format!("{:.digits$}", self.0);
+            let text = if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.')
+            } else {
+                &text
+            };
+            f.write_str(if text == "-0" { "0" } else { text })
+        } else {
+            write!(f, "{:.8e}", self.0)
+        }
+    }
+}
+
+/// Three of them.
+struct Triple([f64; 3]);
+
+impl fmt::Display for Triple {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "({}, {}, {})",
+            Short(self.0[0]),
+            Short(self.0[1]),
+            Short(self.0[2])
+        )
+    }
+}
+
+/// A line of the text: what it is about, and what there is to say.
+fn say(text: &mut String, about: &str, what: impl fmt::Display) {
+    let _ = writeln!(text, "{about:<12} {what}");
+}
+
+impl<R: Real> Picture<'_, R> {
+    /// The pixel at `column` and `row`, worked through.
+    pub(super) fn explain(&self, column: u32, row: u32) -> Result<String, R::Doubt> {
+        let (decision, samples) = self.pixel(column, row)?;
+        let mut text = String::new();
+        if self.stage == Stage::Image {
+            let middle = Short(f64::from(self.size) / 2.0);
+            say(
+                &mut text,
+                "quadrant",
+                format!("column {column} and row {row} against N/2 = {middle}, as in Code 2-1"),
+            );
+        } else {
+            self.explain_ray(&mut text, column, row)?;
+            self.explain_decision(&mut text, column, row, decision)?;
+        }
+        text.push_str(&samples_of(samples));
+        Ok(text)
+    }
+
+    fn explain_ray(&self, text: &mut String, column: u32, row: u32) -> Result<(), R::Doubt> {
+        let ray = self.eye_ray(column, row);
+        let half = f64::from(self.size) / 2.0;
+        let (u, v) = (
+            (f64::from(column) - half) / half,
+            (f64::from(row) - half) / half,
+        );
+        say(text, "u, v", format!("{}, {}", Short(u), Short(v)));
+        say(
+            text,
+            "e",
+            format!(
+                "{}  the pixel's place on the screen",
+                Triple(self.point(ray.origin))
+            ),
+        );
+        say(
+            text,
+            "d",
+            format!(
+                "{}  the way the eye looks",
+                Triple(self.unit(ray.direction.vector))
+            ),
+        );
+        let solids = match self.stage {
+            Stage::Spheres => Solids::Spheres,
+            Stage::Tetrahedron => Solids::Tetrahedra,
+            _ => Solids::All,
+        };
+        let first = self.view.first_hit(&ray, Reach::Line, solids)?;
+        for (solid, hit) in self.view.hits(&ray, Reach::Line, solids)? {
+            let rank = if first.as_ref().is_some_and(|(nearest, _)| *nearest == solid) {
+                ", first of the solids"
+            } else {
+                ""
+            };
+            say(
+                text,
+                "meets",
+                format!(
+                    "{} at t = {}{rank}",
+                    self.name(solid, hit.face),
+                    Short(self.parameter(&ray, &hit))
+                ),
+            );
+        }
+        if let Some(floor) = &self.floor {
+            let (depth, point) = self.surface_point(floor, &ray, row);
+            let inside = if floor.surface.contains(point)? {
+                "in the square"
+            } else {
+                "beside the square"
+            };
+            let t = Short(self.in_scene(depth) * 109f64.sqrt());
+            say(
+                text,
+                "meets",
+                format!(
+                    "the surface's plane at t = {t}, {} {inside}",
+                    Triple(self.point(point))
+                ),
+            );
+        }
+        Ok(())
+    }
+
+    fn explain_decision(
+        &self,
+        text: &mut String,
+        column: u32,
+        row: u32,
+        decision: Decision,
+    ) -> Result<(), R::Doubt> {
+        let ray = self.eye_ray(column, row);
+        match (decision, &self.floor) {
+            (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
+            (Decision::Solid(seen), _) => {
+                say(text, "shows", self.name(usize::from(seen.solid), seen.face));
+                self.explain_solid(text, &self.view, &ray, Reach::Line, seen)?;
+            }
+            (_, Some(floor)) => {
+                let (_, point) = self.surface_point(floor, &ray, row);
+                say(text, "shows", "the surface, which no solid hides");
+                let shadowers = self
+                    .view
+                    .shadowers(&self.view.ray_to_light(point, floor.surface.support))?;
+                self.explain_shadow(text, "the surface", &shadowers);
+                let looking = Line {
+                    origin: point,
+                    leaves: Some(floor.surface.support),
+                    ..ray
+                };
+                if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &floor.mirror) {
+                    let [x, y, z] = self.unit(ray.direction.vector);
+                    say(
+                        text,
+                        "r",
+                        format!("{}  the way the mirrored ray goes", Triple([x, -y, z])),
+                    );
+                    for (solid, hit) in mirror.view.hits(&looking, Reach::Ahead, Solids::All)? {
+                        let t = Short(self.parameter(&looking, &hit));
+                        say(
+                            text,
+                            "mirrors",
+                            format!("{} at t = {t} from the surface", self.name(solid, hit.face)),
+                        );
+                    }
+                    say(
+                        text,
+                        "shows",
+                        format!(
+                            "{}, mirrored",
+                            self.name(usize::from(seen.solid), seen.face)
+                        ),
+                    );
+                    self.explain_solid(text, &mirror.view, &looking, Reach::Ahead, seen)?;
+                    say(text, "reflectance", Short(mirror.reflectance.to_f64()));
+                } else if decision == Decision::Surface && floor.mirror.is_some() {
+                    say(
+                        text,
+                        "mirrors",
+                        "no solid: the surface shows its own colour",
+                    );
+                }
+            }
+            (_, None) => {}
+        }
+        Ok(())
+    }
+
+    /// The point, the normal, the light, and equation 4-1 term by term. In the mirror's view everything is reflected, which is undone.
+    fn explain_solid(
+        &self,
+        text: &mut String,
+        view: &View<R>,
+        ray: &Line<R>,
+        reach: Reach,
+        seen: Seen,
+    ) -> Result<(), R::Doubt> {
+        let solid = usize::from(seen.solid);
+        let only = view
+            .hits(ray, reach, Solids::All)?
+            .into_iter()
+            .find(|(index, _)| *index == solid);
+        let Some((_, hit)) = only else { return Ok(()) };
+        let mirrored = reach == Reach::Ahead;
+        let upright = |[x, y, z]: [f64; 3]| if mirrored { [x, -y, z] } else { [x, y, z] };
+        let height = self
+            .floor
+            .as_ref()
+            .map_or(0.0, |floor| self.in_scene(floor.surface.height));
+        let [x, y, z] = self.point(hit.point);
+        let point = if mirrored {
+            [x, 2.0 * height - y, z]
+        } else {
+            [x, y, z]
+        };
+        say(text, "point", Triple(point));
+        say(text, "n", Triple(upright(self.unit(hit.normal))));
+        if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
+            return Ok(());
+        }
+        let shading = &view.shading;
+        say(
+            text,
+            "l",
+            format!(
+                "{}  toward the light",
+                Triple(upright(self.unit(shading.to_light.vector)))
+            ),
+        );
+        say(
+            text,
+            "v",
+            format!(
+                "{}  toward where the ray came from",
+                Triple(upright(self.unit(-ray.direction.vector)))
+            ),
+        );
+        match shading.halfway() {
+            Some(halfway) => say(text, "h", Triple(upright(self.unit(halfway)))),
+            None => say(text, "h", "none: v + l = 0, and there is no highlight"),
+        }
+        let terms = shading.terms(hit.normal, hit.normal_length)?;
+        say(text, "n·l", Short(terms.normal_light.to_f64()));
+        if let Some(one_minus) = terms.one_minus_normal_halfway {
+            say(
+                text,
+                "n·h",
+                format!(
+                    "{}  (1 − n·h = {})",
+                    Short(1.0 - one_minus.to_f64()),
+                    Short(one_minus.to_f64())
+                ),
+            );
+        }
+        if self.stage >= Stage::Shadow {
+            self.explain_solid_shadow(text, view, &hit)?;
+        }
+        say(
+            text,
+            "ambient",
+            format!("{}  k_a I_a", self.amounts(shading.ambient())),
+        );
+        if !seen.in_shadow {
+            say(
+                text,
+                "diffuse",
+                format!("{}  k_d I max(0, n·l)", self.amounts(terms.diffuse)),
+            );
+            let power = format!("k_s I max(0, n·h)^{}", self.scene.material().exponent);
+            say(
+                text,
+                "specular",
+                format!("{}  {power}", self.amounts(terms.specular)),
+            );
+        }
+        say(
+            text,
+            "c",
+            format!(
+                "{}  the solid's colour, times the sum",
+                self.amounts(self.color(solid))
+            ),
+        );
+        Ok(())
+    }
+
+    fn explain_solid_shadow(
+        &self,
+        text: &mut String,
+        view: &View<R>,
+        hit: &Hit<R>,
+    ) -> Result<(), R::Doubt> {
+        if view.facing_light(hit)?.is_le() {
+            say(
+                text,
+                "in shadow",
+                "the point is turned away from the light: n·l ≤ 0",
+            );
+            return Ok(());
+        }
+        let ray = view.ray_to_light(hit.point, hit.support);
+        let shadowers = view.shadowers(&ray)?;
+        if let Some(floor) = &self.floor
+            && floor.surface.is_ahead(&ray)?
+        {
+            say(text, "in shadow", "the surface is in the light's way");
+        } else {
+            self.explain_shadow(text, "the point", &shadowers);
+        }
+        Ok(())
+    }
+
+    fn explain_shadow(&self, text: &mut String, of: &str, shadowers: &[usize]) {
+        if shadowers.is_empty() {
+            say(
+                text,
+                "in light",
+                format!("nothing stands between {of} and the light"),
+            );
+        }
+        for &solid in shadowers {
+            say(
+                text,
+                "in shadow",
+                format!("{} is in the light's way", self.name(solid, None)),
+            );
+        }
+    }
+
+    /// As a person would call it, counted from 1 as in the document.
+    fn name(&self, solid: usize, face: Option<u8>) -> String {
+        let spheres = self.scene.spheres().len();
+        match face {
+            _ if solid < spheres => format!("sphere {}", solid + 1),
+            Some(face) => format!("tetrahedron {}, face {face}", solid - spheres + 1),
+            None => format!("tetrahedron {}", solid - spheres + 1),
+        }
+    }
+
+    /// A length of view space in the scene's unit.
+    fn in_scene(&self, length: R) -> f64 {
+        length.to_f64() / (1.5 * f64::from(self.size))
+    }
+
+    /// t of a hit, for a direction of length 1.
+    fn parameter(&self, ray: &Line<R>, hit: &Hit<R>) -> f64 {
+        self.in_scene(hit.depth) * ray.direction.squared_length.to_f64().sqrt()
+    }
+
+    /// A point of view space in the scene.
+    fn point(&self, point: Vector<R>) -> [f64; 3] {
+        let [x, y, z] = [point.x, point.y, point.z].map(|coordinate| self.in_scene(coordinate));
+        self.turned_back(x, y, z)
+    }
+
+    /// A direction of view space in the scene, of length 1.
+    fn unit(&self, v: Vector<R>) -> [f64; 3] {
+        let length = v.length().to_f64();
+        self.turned_back(
+            v.x.to_f64() / length,
+            v.y.to_f64() / length,
+            v.z.to_f64() / length,
+        )
+    }
+
+    fn turned_back(&self, x: f64, y: f64, z: f64) -> [f64; 3] {
+        let (sin, cos) = (self.frame.sin.to_f64(), self.frame.cos.to_f64());
+        [x * cos + z * sin, y, z * cos - x * sin]
+    }
+
+    fn amounts(&self, v: Vector<R>) -> Triple {
+        Triple([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()])
+    }
+}
+
+/// What came out: the floats with all their digits, the bytes of the display.
+pub(super) fn samples_of(samples: [f32; 3]) -> String {
+    let mut text = String::new();
+    let [r, g, b] = samples;
+    say(&mut text, "samples", format!("{r:?} {g:?} {b:?}"));
+    let [r, g, b] = samples.map(display_byte);
+    say(&mut text, "bytes", format!("{r} {g} {b}"));
+    text
+}
