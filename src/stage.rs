@@ -52,7 +52,7 @@ impl Stage {
     }
 
     /// Its name, as the menu and the window's title show it.
-    pub fn title(self) -> &'static str {
+    pub const fn title(self) -> &'static str {
         match self {
             Stage::Image => "Image",
             Stage::Spheres => "Spheres",

@@ -1,0 +1,122 @@
+//! The window: one picture, redrawn when the angle moves or the window asks.
+//!
+//! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place: the keys are one table
+//! ([`key_table`]), α is a clock of its own that knows no window, the window knows no scene, and the application between them traces
+//! a picture only when stage or α changed.
+
+mod action;
+mod app;
+mod error;
+mod frames;
+mod picture;
+mod playback;
+#[cfg(all(unix, not(target_vendor = "apple")))]
+mod server;
+mod snapshot;
+mod window;
+#[cfg(all(unix, not(target_vendor = "apple")))]
+mod x11;
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::image::SaveError;
+use crate::{Kernel, Scene, Stage};
+
+pub use action::key_table;
+pub use error::ViewerError;
+pub use playback::Pace;
+
+/// What the viewer shows and how it starts.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What is seen.
+    pub scene: Scene,
+    /// The stage it opens on.
+    pub stage: Stage,
+    /// N: pictures are N × N pixels.
+    pub size: u32,
+    /// How pictures are traced.
+    pub kernel: Kernel,
+    /// Threads that trace; 0 for one a core.
+    pub threads: usize,
+    /// How stage 7 advances.
+    pub pace: Pace,
+    /// Leave after so many frames, at least one; a static stage is then drawn again and again until it has had them.
+    pub exit_after_frames: Option<u64>,
+}
+
+/// Something that a person at the terminal may want to know, as one line of text by [`fmt::Display`].
+#[derive(Debug)]
+pub enum Event {
+    /// The first frame is on its way to the display.
+    FirstFrame {
+        /// Since [`run`] was called.
+        after: Duration,
+        /// The name that OpenGL gives what drew it.
+        renderer: String,
+    },
+    /// The shown picture is in a new file.
+    Saved(PathBuf),
+    /// The shown picture could not be saved.
+    NotSaved(SaveError),
+    /// The window is closed.
+    Left(Counts),
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Event::FirstFrame { after, renderer } => {
+                write!(
+                    f,
+                    "first frame after {} ms, drawn by {renderer}",
+                    after.as_millis()
+                )
+            }
+            Event::Saved(path) => write!(f, "saved {}", path.display()),
+            Event::NotSaved(error) => write!(f, "not saved: {error}"),
+            Event::Left(counts) => counts.fmt(f),
+        }
+    }
+}
+
+/// What it took to show all that was shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Pictures traced.
+    pub traces: u64,
+    /// Pictures brought to the texture.
+    pub uploads: u64,
+    /// Frames drawn.
+    pub draws: u64,
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Counts {
+            traces,
+            uploads,
+            draws,
+        } = self;
+        write!(
+            f,
+            "traced {traces}, uploaded {uploads}, drew {draws} frames"
+        )
+    }
+}
+
+/// Opens the viewer and stays until it is left. `report` is told what happens, on the calling thread.
+///
+/// A process can do this once. On macOS and Windows it must be the main thread that does.
+///
+/// # Errors
+/// [`ViewerError`] where no window can be opened, or the display goes away. Where an X server does, Xlib leaves no way back: a line on
+/// standard error, and the process ends with status 1.
+///
+/// # Panics
+/// On macOS and Windows, where the calling thread is not the main thread.
+pub fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
+    app::App::new(options, report)?.run()
+}

@@ -1,0 +1,354 @@
+//! The window, its OpenGL context, and the screen in it.
+
+use std::num::NonZeroU32;
+use std::rc::Rc;
+use std::time::Duration;
+
+use glam::UVec2;
+use glow::HasContext as _;
+use glutin::config::{ColorBufferType, Config, ConfigTemplateBuilder};
+use glutin::context::{
+    ContextApi, ContextAttributesBuilder, GlProfile, PossiblyCurrentContext, Version,
+};
+use glutin::display::{Display, DisplayApiPreference, GetGlDisplay as _};
+use glutin::prelude::*;
+use glutin::surface::{Surface, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle, RawDisplayHandle, RawWindowHandle};
+use winit::dpi::PhysicalSize;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::{Fullscreen, Window, WindowAttributes};
+
+use crate::Image;
+use crate::screen::{Placement, Screen};
+
+use super::ViewerError;
+use super::error::reason;
+
+/// The window and everything that draws in it.
+pub(super) struct View {
+    /// `None` only while it is being replaced.
+    drawing: Option<Drawing>,
+    config: Config,
+    window: Window,
+    /// The width and height of the surface in pixels; 0 where the window shows none.
+    surface: UVec2,
+    /// N of the pictures that are shown.
+    picture: u32,
+}
+
+/// What is lost when the context is. Freed in this order: the screen needs the context.
+struct Drawing {
+    screen: Screen,
+    renderer: String,
+    surface: Surface<WindowSurface>,
+    context: PossiblyCurrentContext,
+}
+
+impl View {
+    /// Opens a window for pictures of `picture` × `picture` pixels: of that size where it fits the monitor, else the largest square that does.
+    pub(super) fn open(event_loop: &ActiveEventLoop, picture: u32) -> Result<View, ViewerError> {
+        let monitor = event_loop
+            .primary_monitor()
+            .or_else(|| event_loop.available_monitors().next())
+            .map(|monitor| monitor.size())
+            .filter(|size| size.width > 0 && size.height > 0);
+        let side = monitor.map_or(picture, |size| picture.min(size.width).min(size.height));
+        let attributes = Window::default_attributes()
+            .with_title("firsthit")
+            .with_inner_size(PhysicalSize::new(side, side));
+        let mut reasons = Vec::new();
+        for prefer_egl in [false, true] {
+            match View::open_with(event_loop, &attributes, picture, prefer_egl) {
+                Ok(view) => return Ok(view),
+                Err(Failure::OpenGl(reason)) if !reasons.contains(&reason) => reasons.push(reason),
+                Err(Failure::OpenGl(_)) => {}
+                Err(Failure::Viewer(error)) => return Err(error),
+            }
+        }
+        Err(ViewerError::OpenGl(reasons.join("; ")))
+    }
+
+    fn open_with(
+        event_loop: &ActiveEventLoop,
+        attributes: &WindowAttributes,
+        picture: u32,
+        prefer_egl: bool,
+    ) -> Result<View, Failure> {
+        let create = |config: Option<&Config>| match config {
+            Some(config) => glutin_winit::finalize_window(event_loop, attributes.clone(), config),
+            None => event_loop.create_window(attributes.clone()),
+        };
+        // Windows has no display without a window; elsewhere the display says what kind of window it can draw in.
+        let early = cfg!(windows).then(|| create(None)).transpose()?;
+        let handle = early
+            .as_ref()
+            .map(|window| window.window_handle())
+            .transpose()?;
+        let display = display(event_loop, handle.map(|handle| handle.as_raw()), prefer_egl)?;
+        let config = config(&display)?;
+        let window = match early {
+            Some(window) => window,
+            None => create(Some(&config))?,
+        };
+        let size = window.inner_size();
+        let mut view = View {
+            drawing: None,
+            config,
+            window,
+            surface: UVec2::new(size.width, size.height),
+            picture,
+        };
+        view.renew()?;
+        Ok(view)
+    }
+
+    /// Makes surface, context and screen, anew where they were lost. The screen's texture is empty after it.
+    fn renew(&mut self) -> Result<(), Failure> {
+        self.drawing = None;
+        self.drawing = Some(Drawing::new(
+            &self.config,
+            &self.window,
+            self.surface,
+            self.picture,
+        )?);
+        Ok(())
+    }
+
+    pub(super) fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The name of the OpenGL renderer.
+    pub(super) fn renderer(&self) -> &str {
+        self.drawing
+            .as_ref()
+            .map_or("", |drawing| &drawing.renderer)
+    }
+
+    /// Whether there is not a pixel to draw on.
+    pub(super) fn is_empty(&self) -> bool {
+        self.surface.min_element() == 0
+    }
+
+    /// Whether the window is an icon, as far as the display says.
+    pub(super) fn is_minimized(&self) -> bool {
+        self.window.is_minimized() == Some(true)
+    }
+
+    /// The window has a new size, in pixels.
+    pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
+        self.surface = UVec2::new(size.width, size.height);
+        let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
+        if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
+            drawing.surface.resize(&drawing.context, width, height);
+        }
+    }
+
+    /// How long the monitor shows a frame: 1/60 s where it does not say.
+    pub(super) fn frame_time(&self) -> Duration {
+        let millihertz = self
+            .window
+            .current_monitor()
+            .and_then(|monitor| monitor.refresh_rate_millihertz())
+            .filter(|&millihertz| millihertz > 0)
+            .unwrap_or(60_000);
+        Duration::from_secs(1000) / millihertz
+    }
+
+    pub(super) fn toggle_full_screen(&self) {
+        let wanted = match self.window.fullscreen() {
+            Some(_) => None,
+            None => Some(Fullscreen::Borderless(None)),
+        };
+        self.window.set_fullscreen(wanted);
+    }
+
+    /// Draws the picture, uploading `image` first where it changed. Whether it is on the way to the display: `false` says that the
+    /// surface was lost and everything on it made anew, so that `image` must be drawn again.
+    pub(super) fn draw(&mut self, image: Option<&Image>) -> Result<bool, ViewerError> {
+        let Some(drawing) = &mut self.drawing else {
+            return Err(ViewerError::Lost);
+        };
+        if let Some(image) = image {
+            drawing.screen.upload(image)?;
+        }
+        let placement = Placement::fit(self.surface, self.picture);
+        drawing.screen.draw(self.surface, placement);
+        self.window.pre_present_notify();
+        if drawing.surface.swap_buffers(&drawing.context).is_ok() {
+            return Ok(true);
+        }
+        match self.renew() {
+            Ok(()) => Ok(false),
+            Err(Failure::OpenGl(_)) => Err(ViewerError::Lost),
+            Err(Failure::Viewer(error)) => Err(error),
+        }
+    }
+}
+
+impl Drawing {
+    fn new(
+        config: &Config,
+        window: &Window,
+        size: UVec2,
+        picture: u32,
+    ) -> Result<Drawing, Failure> {
+        let display = config.display();
+        let handle = window.window_handle()?.as_raw();
+        let attributes = ContextAttributesBuilder::new()
+            .with_profile(GlProfile::Core)
+            .with_context_api(ContextApi::OpenGl(Some(Version::new(3, 3))))
+            .build(Some(handle));
+        // SAFETY: the handle is of a window that outlives this context.
+        let context = unsafe { display.create_context(config, &attributes) }?;
+        // A window of no size yet still needs a surface of some.
+        let side = |length: u32| NonZeroU32::new(length).unwrap_or(NonZeroU32::MIN);
+        let attributes = SurfaceAttributesBuilder::<WindowSurface>::new().build(
+            handle,
+            side(size.x),
+            side(size.y),
+        );
+        // SAFETY: as above.
+        let surface = unsafe { display.create_window_surface(config, &attributes) }?;
+        let context = context.make_current(&surface)?;
+        // On Wayland a swap that waits would wait for ever while the window is hidden; there the compositor asks for each frame. Where a
+        // driver knows no interval, the clock alone paces the animation.
+        let interval = match window.display_handle()?.as_raw() {
+            RawDisplayHandle::Wayland(_) => SwapInterval::DontWait,
+            _ => SwapInterval::Wait(NonZeroU32::MIN),
+        };
+        let _ = surface.set_swap_interval(&context, interval);
+        // SAFETY: the context is current, and the functions come from its own display.
+        let gl = unsafe {
+            glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name))
+        };
+        // SAFETY: the context is current; every context has these two names.
+        let renderer = unsafe { gl.get_parameter_string(glow::RENDERER) };
+        let screen = Screen::new(Rc::new(gl), picture).map_err(ViewerError::from)?;
+        Ok(Drawing {
+            screen,
+            renderer,
+            surface,
+            context,
+        })
+    }
+}
+
+impl Drop for Drawing {
+    fn drop(&mut self) {
+        // Freeing the screen needs its context. Where it is lost, there is nothing left to free.
+        let _ = self.context.make_current(&self.surface);
+    }
+}
+
+/// Opens OpenGL on the display of `event_loop`; on Windows through `window`.
+fn display(
+    event_loop: &ActiveEventLoop,
+    window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> Result<Display, Failure> {
+    let handle = event_loop.display_handle()?.as_raw();
+    let preference = preference(handle, window, prefer_egl);
+    // SAFETY: the event loop keeps the display open until the window and its context are gone.
+    Ok(unsafe { Display::new(handle, preference) }?)
+}
+
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn preference(
+    display: RawDisplayHandle,
+    _window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> DisplayApiPreference {
+    match display {
+        RawDisplayHandle::Xlib(_) if !prefer_egl => {
+            DisplayApiPreference::Glx(Box::new(winit::platform::x11::register_xlib_error_hook))
+        }
+        _ => DisplayApiPreference::Egl,
+    }
+}
+
+#[cfg(windows)]
+fn preference(
+    _display: RawDisplayHandle,
+    window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> DisplayApiPreference {
+    if prefer_egl {
+        DisplayApiPreference::Egl
+    } else {
+        DisplayApiPreference::Wgl(window)
+    }
+}
+
+#[cfg(target_vendor = "apple")]
+fn preference(
+    _display: RawDisplayHandle,
+    _window: Option<RawWindowHandle>,
+    _prefer_egl: bool,
+) -> DisplayApiPreference {
+    DisplayApiPreference::Cgl
+}
+
+/// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop could shine.
+fn config(display: &Display) -> Result<Config, Failure> {
+    let template = ConfigTemplateBuilder::new()
+        .with_alpha_size(0)
+        .with_depth_size(0)
+        .with_stencil_size(0)
+        .build();
+    // SAFETY: the template names no native window that could have gone.
+    let configs = unsafe { display.find_configs(template) }?;
+    let eight_bits = ColorBufferType::Rgb {
+        r_size: 8,
+        g_size: 8,
+        b_size: 8,
+    };
+    configs
+        .min_by_key(|config| {
+            (
+                config.color_buffer_type() != Some(eight_bits),
+                config.supports_transparency() == Some(true),
+                config.alpha_size(),
+                config.num_samples(),
+                !config.hardware_accelerated(),
+                config.depth_size(),
+                config.stencil_size(),
+                config.srgb_capable(),
+            )
+        })
+        .ok_or_else(|| {
+            Failure::OpenGl("the display offers no configuration for a window".to_owned())
+        })
+}
+
+/// Why a window or what is in it could not be made.
+enum Failure {
+    /// This way to OpenGL is closed; another may be open.
+    OpenGl(String),
+    /// No way leads further.
+    Viewer(ViewerError),
+}
+
+impl From<glutin::error::Error> for Failure {
+    fn from(error: glutin::error::Error) -> Failure {
+        Failure::OpenGl(error.to_string())
+    }
+}
+
+impl From<winit::error::OsError> for Failure {
+    fn from(error: winit::error::OsError) -> Failure {
+        Failure::OpenGl(reason(&error))
+    }
+}
+
+impl From<raw_window_handle::HandleError> for Failure {
+    fn from(error: raw_window_handle::HandleError) -> Failure {
+        Failure::OpenGl(error.to_string())
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Failure {
+        Failure::Viewer(error)
+    }
+}

@@ -1,0 +1,545 @@
+//! The viewer, for real: the built program in a window under Xvfb, keys through XTEST, and the pixels of the window compared byte for
+//! byte with the traced picture.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    unreachable_pub,
+    missing_docs,
+    reason = "a test stops at the first surprise"
+)]
+#![cfg(target_os = "linux")]
+
+#[path = "viewer/pixels.rs"]
+mod pixels;
+#[path = "viewer/program.rs"]
+mod program;
+#[path = "viewer/session.rs"]
+mod session;
+#[path = "viewer/xvfb.rs"]
+mod xvfb;
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::thread;
+use std::time::Duration;
+
+use firsthit::Stage;
+use firsthit::camera::{ROUND, frame_angle};
+use pixels::traced;
+use program::{Program, wait_for};
+use session::{ESCAPE, HOME, LEFT, RIGHT, SPACE, Session};
+use x11rb::connection::Connection as _;
+use x11rb::protocol::xproto::{
+    ConnectionExt as _, CreateWindowAux, InputFocus, Window, WindowClass,
+};
+use xvfb::Xvfb;
+
+/// How long anything may take that is waited for.
+const DEADLINE: Duration = Duration::from_secs(30);
+
+/// How long something is watched that must stay as it is.
+const WATCH: Duration = Duration::from_secs(2);
+
+#[test]
+fn opens_on_the_animation_and_shows_stage_after_stage_as_traced() {
+    let Some(mut session) = Session::start(&[]) else {
+        return;
+    };
+    assert_eq!(session.size(), (500, 500));
+    session.titled(&["firsthit — 7 Animation — ", " fps"]);
+    let title = session.title();
+    wait_for("α to move", || (session.title() != title).then_some(()));
+    session.press(SPACE);
+    session.titled(&["paused"]);
+    session.type_keys("0");
+    session.titled(&["α = 0.000"]);
+    session.shows(500, Stage::Animation, 0.0);
+    for stage in Stage::ALL.into_iter().rev() {
+        session.type_keys(&stage.number().to_string());
+        session.titled(&[&stage.to_string(), "α = 0.000"]);
+        session.shows(500, stage, 0.0);
+        session.screenshot(&format!("viewer-stage{}.png", stage.number()));
+    }
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
+fn a_static_stage_after_the_playing_animation_starts_at_zero() {
+    let Some(session) = Session::start(&["view", "--size", "50"]) else {
+        return;
+    };
+    wait_for("α to move", || {
+        (!session.title().contains("α = 0.000")).then_some(())
+    });
+    session.type_keys("6");
+    session.shows(50, Stage::Reflection, 0.0);
+}
+
+#[test]
+fn digits_of_the_keypad_choose_the_stage_without_num_lock_too() {
+    let Some(session) = Session::start(&["view", "--stage", "6", "--size", "50"]) else {
+        return;
+    };
+    // KP_End, KP_Down, … as they lie around the keypad.
+    let keypad = [0xff9c, 0xff99, 0xff9b, 0xff96, 0xff9d, 0xff98];
+    for (stage, keysym) in Stage::ALL.into_iter().zip(keypad) {
+        let (keycode, _) = session.keycode(keysym);
+        session.press_code(keycode);
+        session.shows(50, stage, 0.0);
+        session.type_keys("6");
+        session.shows(50, Stage::Reflection, 0.0);
+    }
+}
+
+#[test]
+fn digits_choose_the_stage_where_the_digit_row_is_shifted() {
+    let Some(session) = Session::start(&["view", "--stage", "6", "--size", "50"]) else {
+        return;
+    };
+    // As on a French keyboard: & é " ' ( - without Shift, the digits with it.
+    let french = [0x26, 0xe9, 0x22, 0x27, 0x28, 0x2d];
+    for (digit, symbol) in (u32::from('1')..).zip(french) {
+        let (keycode, _) = session.keycode(digit);
+        session
+            .connection
+            .change_keyboard_mapping(1, keycode, 2, &[symbol, digit])
+            .unwrap()
+            .check()
+            .unwrap();
+    }
+    for (stage, symbol) in Stage::ALL.into_iter().zip(french) {
+        let (keycode, _) = session.keycode(symbol);
+        session.press_code(keycode);
+        session.shows(50, stage, 0.0);
+        session.type_keys("6");
+        session.shows(50, Stage::Reflection, 0.0);
+        session.press_shifted(keycode);
+        session.shows(50, stage, 0.0);
+    }
+}
+
+#[test]
+fn a_static_stage_is_traced_and_uploaded_once_and_then_sleeps() {
+    let Some(mut session) = Session::start(&["view", "--stage", "4"]) else {
+        return;
+    };
+    session.shows(500, Stage::Shading, 0.0);
+    for stage in [Stage::Shadow, Stage::Reflection] {
+        session.type_keys(&stage.number().to_string());
+        session.shows(500, stage, 0.0);
+        // Pressed again it is the same picture.
+        session.type_keys(&stage.number().to_string());
+    }
+    wait_for("the program to sleep on", || {
+        let before = session.program.sleeps();
+        thread::sleep(WATCH);
+        (session.program.sleeps() == before).then_some(())
+    });
+    session.press(ESCAPE);
+    let [traces, uploads, draws] = session.program.left();
+    assert_eq!([traces, uploads], [3, 3]);
+    // One each, and a few that the window asked for when it appeared.
+    assert!((3..=8).contains(&draws), "{draws} frames");
+}
+
+#[test]
+fn the_paused_animation_sleeps() {
+    let Some(session) = Session::start(&["view", "--size", "50"]) else {
+        return;
+    };
+    session.press(SPACE);
+    session.titled(&["paused"]);
+    wait_for("the program to sleep on", || {
+        let before = session.program.sleeps();
+        thread::sleep(WATCH);
+        (session.program.sleeps() == before).then_some(())
+    });
+    let title = session.title();
+    session.press(SPACE);
+    wait_for("α to move on", || (session.title() != title).then_some(()));
+}
+
+#[test]
+fn the_picture_keeps_its_aspect_in_any_window() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "120"]) else {
+        return;
+    };
+    assert_eq!(session.size(), (120, 120));
+    for (width, height) in [
+        (500, 300), // twice, with bars left and right and below and above
+        (360, 1000),
+        (121, 122),
+        (119, 700),
+        (64, 48),
+        (1, 1),
+        (1, 300),
+        (120, 120),
+    ] {
+        session.resize(width, height);
+        session.shows(120, Stage::Reflection, 0.0);
+        session.screenshot(&format!("viewer-{width}x{height}.png"));
+    }
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1], "a new size needs no new picture");
+}
+
+#[test]
+fn a_picture_larger_than_the_monitor_opens_as_large_as_it_fits() {
+    let Some(session) = Session::start(&["view", "--stage", "1", "--size", "1500"]) else {
+        return;
+    };
+    assert_eq!(session.size(), (1024, 1024));
+    session.shows(1500, Stage::Image, 0.0);
+}
+
+#[test]
+fn a_window_made_an_icon_rests_and_comes_back() {
+    let Some(session) = Session::start(&["view", "--size", "60"]) else {
+        return;
+    };
+    session.titled(&["fps"]);
+    session.iconify(true);
+    rests(&session);
+    let title = session.title();
+    session.iconify(false);
+    wait_for("α to move on", || (session.title() != title).then_some(()));
+    session.type_keys("6");
+    session.shows(60, Stage::Reflection, 0.0);
+    session.iconify(true);
+    session.iconify(false);
+    session.shows(60, Stage::Reflection, 0.0);
+}
+
+#[test]
+fn a_covered_window_rests_and_comes_back() {
+    let Some(session) = Session::start(&["view", "--size", "60"]) else {
+        return;
+    };
+    session.titled(&["fps"]);
+    let cover = cover(&session);
+    rests(&session);
+    let title = session.title();
+    session.connection.destroy_window(cover).unwrap();
+    session.connection.flush().unwrap();
+    wait_for("α to move on", || (session.title() != title).then_some(()));
+}
+
+/// Waits until the animation stands still although it is not paused.
+fn rests(session: &Session) {
+    wait_for("the animation to rest", || {
+        let title = session.title();
+        thread::sleep(WATCH);
+        (session.title() == title).then_some(())
+    });
+    assert!(!session.title().contains("paused"));
+}
+
+/// Puts a window over the whole screen.
+fn cover(session: &Session) -> Window {
+    let connection = &session.connection;
+    let window = connection.generate_id().unwrap();
+    let attributes = CreateWindowAux::new()
+        .override_redirect(1)
+        .background_pixel(0);
+    connection
+        .create_window(
+            x11rb::COPY_DEPTH_FROM_PARENT,
+            window,
+            session.root,
+            0,
+            0,
+            1280,
+            1024,
+            0,
+            WindowClass::INPUT_OUTPUT,
+            x11rb::COPY_FROM_PARENT,
+            &attributes,
+        )
+        .unwrap();
+    connection.map_window(window).unwrap().check().unwrap();
+    window
+}
+
+#[test]
+fn keys_turn_the_picture_to_the_angle_they_name() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    let stage = Stage::Reflection;
+    session.shows(40, stage, 0.0);
+    session.type_keys(".");
+    session.shows(40, stage, frame_angle(1));
+    session.type_keys("..");
+    session.shows(40, stage, frame_angle(3));
+    session.press(RIGHT);
+    session.shows(40, stage, frame_angle(3) + 0.05);
+    session.type_keys(",");
+    session.shows(40, stage, frame_angle(3));
+    session.press(HOME);
+    session.shows(40, stage, 0.0);
+    session.type_keys(",");
+    session.shows(40, stage, frame_angle(ROUND - 1));
+    session.type_keys(".");
+    session.shows(40, stage, 0.0);
+    session.press(LEFT);
+    session.shows(40, stage, TAU - 0.05);
+    // An angle that was asked for stays from stage to stage.
+    session.type_keys("5");
+    session.shows(40, Stage::Shadow, TAU - 0.05);
+    session.type_keys("0");
+    session.shows(40, Stage::Shadow, 0.0);
+    // In the animation they pause it.
+    session.type_keys("7.");
+    session.titled(&["7 Animation", "paused"]);
+    session.type_keys("0.");
+    session.shows(40, Stage::Animation, frame_angle(1));
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
+fn the_animation_plays_as_fast_as_it_is_told() {
+    let moved = |session: &Session| {
+        let before = session.alpha();
+        thread::sleep(WATCH);
+        (session.alpha() - before).abs()
+    };
+    let Some(slow) = Session::start(&["view", "--size", "40", "--speed", "0.0011"]) else {
+        return;
+    };
+    slow.type_keys(&"+".repeat(60));
+    wait_for("α to turn fast", || (moved(&slow) > 0.2).then_some(()));
+    slow.type_keys(&"-".repeat(70));
+    wait_for("α to turn slowly", || (moved(&slow) < 0.1).then_some(()));
+}
+
+#[test]
+fn stepping_shows_the_frames_of_the_document_and_starts_again() {
+    let frames = (ROUND + 3).to_string();
+    let arguments = [
+        "view",
+        "--step",
+        "0.3",
+        "--size",
+        "40",
+        "--exit-after-frames",
+        &frames,
+    ];
+    let Some(mut session) = Session::start(&arguments[..5]) else {
+        return;
+    };
+    session.press(SPACE);
+    session.titled(&["paused"]);
+    let title = session.title();
+    let frame = (0..ROUND).find(|&k| title.contains(&format!("α = {:.3} ", frame_angle(k))));
+    let angle = frame_angle(frame.expect("an angle of the grid"));
+    session.shows(40, Stage::Animation, angle);
+    session.type_keys("q");
+    session.program.left();
+
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let environment = [("DISPLAY", xvfb.display.as_str())];
+    let mut program = Program::start(folder.path(), &arguments, &environment);
+    assert_eq!(program.left(), [ROUND + 3; 3]);
+}
+
+#[test]
+fn a_static_stage_leaves_after_its_frames_too() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "view",
+        "--stage",
+        "6",
+        "--size",
+        "40",
+        "--exit-after-frames",
+        "5",
+    ];
+    let environment = [("DISPLAY", xvfb.display.as_str())];
+    let mut program = Program::start(folder.path(), &arguments, &environment);
+    assert_eq!(program.left(), [1, 1, 5]);
+}
+
+#[test]
+fn the_keys_are_said_at_the_start() {
+    let Some(session) = Session::start(&["view", "--stage", "1", "--size", "40"]) else {
+        return;
+    };
+    let table = firsthit::viewer::key_table();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(session.program.first_lines(lines.len()), lines);
+}
+
+#[test]
+fn saving_never_overwrites() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    let folder = session.folder.path().to_owned();
+    let taken = folder.join("firsthit-stage6-0002.png");
+    fs::write(&taken, "not ours").unwrap();
+    session.type_keys("ss.sS3S");
+    session.program.line("saved firsthit-stage3-0001.exr");
+    let expected = |stage, alpha, name: &str| {
+        let path = folder
+            .join("expected")
+            .with_extension(name.rsplit('.').next().unwrap());
+        traced(40, stage, alpha).save(&path).unwrap();
+        assert_eq!(
+            fs::read(folder.join(name)).unwrap(),
+            fs::read(path).unwrap(),
+            "{name}"
+        );
+    };
+    let six = Stage::Reflection;
+    expected(six, 0.0, "firsthit-stage6-0001.png");
+    expected(six, 0.0, "firsthit-stage6-0003.png");
+    expected(six, frame_angle(1), "firsthit-stage6-0004.png");
+    expected(six, frame_angle(1), "firsthit-stage6-0001.exr");
+    expected(
+        Stage::Tetrahedron,
+        frame_angle(1),
+        "firsthit-stage3-0001.exr",
+    );
+    assert_eq!(fs::read(taken).unwrap(), b"not ours");
+    for name in ["0001.png", "0003.png", "0004.png", "0001.exr"] {
+        session
+            .program
+            .line(&format!("saved firsthit-stage6-{name}"));
+    }
+    // Five pictures, the one that was there, and two to compare with.
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 8);
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
+fn a_picture_that_cannot_be_saved_is_a_line_and_no_more() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    fs::remove_dir(session.folder.path()).unwrap();
+    session.type_keys("s5");
+    session.shows(40, Stage::Shadow, 0.0);
+    session.type_keys("q");
+    let (status, errors) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+    assert!(
+        errors.starts_with("firsthit: not saved: firsthit-stage6-0001.png: "),
+        "{errors}"
+    );
+    assert_eq!(errors.lines().count(), 1);
+}
+
+#[test]
+fn q_esc_and_the_window_manager_leave() {
+    let leave: [fn(&Session); 3] = [
+        |session| session.type_keys("q"),
+        |session| session.press(ESCAPE),
+        Session::close,
+    ];
+    for leave in leave {
+        let Some(mut session) = Session::start(&["view", "--size", "40"]) else {
+            return;
+        };
+        leave(&session);
+        session.program.left();
+    }
+}
+
+#[test]
+fn keys_of_another_window_are_not_ours() {
+    let Some(session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    let cover = cover(&session);
+    let connection = &session.connection;
+    connection
+        .set_input_focus(InputFocus::POINTER_ROOT, cover, x11rb::CURRENT_TIME)
+        .unwrap()
+        .check()
+        .unwrap();
+    session.type_keys("1q");
+    connection.destroy_window(cover).unwrap().check().unwrap();
+    session.shows(40, Stage::Reflection, 0.0);
+}
+
+/// The program, on a display that cannot be had, says so in one line and ends with status 1.
+fn refused(environment: &[(&str, &str)], parts: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut viewer = Program::start(folder.path(), &["view"], environment);
+    let (status, errors) = viewer.ended();
+    assert_eq!(status.code(), Some(1), "{errors}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    for part in parts.iter().chain(&["firsthit capture"]) {
+        assert!(errors.contains(part), "{part} is not in {errors}");
+    }
+}
+
+#[test]
+fn no_display_is_one_line() {
+    refused(&[], &["WAYLAND_DISPLAY", "DISPLAY"]);
+    refused(&[("DISPLAY", "")], &["WAYLAND_DISPLAY", "DISPLAY"]);
+    refused(&[("DISPLAY", ":64000")], &["DISPLAY=:64000"]);
+    refused(
+        &[("WAYLAND_DISPLAY", "/nowhere/wayland-0")],
+        &["WAYLAND_DISPLAY=/nowhere/wayland-0"],
+    );
+}
+
+#[test]
+fn a_server_without_what_a_window_needs_is_one_line() {
+    let Some(xvfb) = Xvfb::start(&["-extension", "RANDR"]) else {
+        return;
+    };
+    refused(&[("DISPLAY", &xvfb.display)], &["RANDR"]);
+}
+
+#[test]
+fn x11_serves_where_wayland_is_named_but_not_there() {
+    let nowhere = ("WAYLAND_DISPLAY", "/nowhere/wayland-0");
+    let arguments = ["view", "--stage", "6", "--size", "40"];
+    let Some(session) = Session::start_with(&arguments, &[nowhere]) else {
+        return;
+    };
+    session.shows(40, Stage::Reflection, 0.0);
+}
+
+#[test]
+fn egl_serves_where_the_server_has_no_glx() {
+    let Some(xvfb) = Xvfb::start(&["-extension", "GLX"]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["view", "--size", "40", "--exit-after-frames", "3"];
+    let environment = [("DISPLAY", xvfb.display.as_str())];
+    let mut program = Program::start(folder.path(), &arguments, &environment);
+    let [_, _, draws] = program.left();
+    assert_eq!(draws, 3);
+}
+
+#[test]
+fn the_death_of_the_server_is_one_line() {
+    for stage in ["6", "7"] {
+        let Some(mut session) = Session::start(&["view", "--stage", stage, "--size", "40"]) else {
+            return;
+        };
+        session.titled(&["firsthit"]);
+        session.crash_server();
+        let (status, errors) = session.program.ended();
+        assert_eq!(status.code(), Some(1), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        assert!(errors.contains("the display went away"), "{errors}");
+    }
+}

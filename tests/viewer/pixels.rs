@@ -1,0 +1,79 @@
+//! What a window shows, and what it should show.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use firsthit::image::display_byte;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+/// The document's glClearColor, as bytes.
+const BLUE: [u8; 3] = [0, 0, 255];
+
+/// The bytes of a drawn window or of what should be drawn: red, green, blue, rows from the top.
+#[derive(PartialEq)]
+pub struct Pixels {
+    pub width: usize,
+    pub height: usize,
+    pub bytes: Vec<[u8; 3]>,
+}
+
+impl Pixels {
+    pub fn save(&self, path: &Path) {
+        let file = fs::File::create(path).unwrap();
+        let mut encoder = png::Encoder::new(
+            file,
+            u32::try_from(self.width).unwrap(),
+            u32::try_from(self.height).unwrap(),
+        );
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&self.bytes.concat()).unwrap();
+    }
+}
+
+/// Keeps two pictures that should be the same, to be looked at.
+pub fn keep(shown: &Pixels, expected: &Pixels) -> [PathBuf; 2] {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    [(shown, "shown"), (expected, "expected")].map(|(pixels, name)| {
+        let path = folder.join(format!("viewer-{}-{name}.png", std::process::id()));
+        pixels.save(&path);
+        path
+    })
+}
+
+/// The picture as the library traces it.
+pub fn traced(size: u32, stage: Stage, alpha: f64) -> Image {
+    let mut image = Image::new(size).unwrap();
+    let mut tracer = Tracer::new(Kernel::default(), 1).unwrap();
+    tracer
+        .trace(&Scene::builtin(), stage, alpha, &mut image)
+        .unwrap();
+    image
+}
+
+/// `picture` in a window: in the middle, in whole multiples where they fit, with blue around it.
+pub fn letterboxed(picture: &Image, width: usize, height: usize) -> Pixels {
+    let size = picture.size() as usize;
+    let side = width.min(height);
+    let extent = if side < size {
+        side
+    } else {
+        side / size * size
+    };
+    let (left, bottom) = ((width - extent) / 2, (height - extent) / 2);
+    let texel = |pixel: usize, start: usize| {
+        let pixel = pixel.checked_sub(start).filter(|&pixel| pixel < extent)?;
+        // The one that the centre of the pixel lies in.
+        u32::try_from((2 * pixel + 1) * size / (2 * extent)).ok()
+    };
+    let byte = |x, y| {
+        let (column, row) = (texel(x, left)?, texel(height - 1 - y, bottom)?);
+        Some(picture.pixel(column, row)?.map(display_byte))
+    };
+    let bytes = (0..height).flat_map(|y| (0..width).map(move |x| byte(x, y).unwrap_or(BLUE)));
+    Pixels {
+        width,
+        height,
+        bytes: bytes.collect(),
+    }
+}

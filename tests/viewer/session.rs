@@ -1,0 +1,302 @@
+//! The program in a window on an X server, a keyboard for it, and eyes on its pixels.
+
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use firsthit::Stage;
+use tempfile::TempDir;
+use x11rb::connection::Connection as _;
+use x11rb::protocol::xproto::{
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat,
+    InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MapState, PropMode, Window,
+};
+use x11rb::protocol::xtest::ConnectionExt as _;
+use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
+
+use super::DEADLINE;
+use super::pixels::{Pixels, keep, letterboxed, traced};
+use super::program::{Program, wait_for};
+use super::xvfb::Xvfb;
+
+pub const SHIFT: u32 = 0xffe1;
+pub const SPACE: u32 = 0x20;
+pub const ESCAPE: u32 = 0xff1b;
+pub const HOME: u32 = 0xff50;
+pub const LEFT: u32 = 0xff51;
+pub const RIGHT: u32 = 0xff53;
+
+/// The viewer with its window on a display of its own.
+pub struct Session {
+    pub program: Program,
+    pub connection: RustConnection,
+    pub root: Window,
+    pub window: Window,
+    xvfb: Option<Xvfb>,
+    pub folder: TempDir,
+}
+
+impl Session {
+    /// Starts the program with `arguments` under an Xvfb, waits for its first frame and gives it the keyboard. `None` where there is
+    /// no Xvfb.
+    pub fn start(arguments: &[&str]) -> Option<Session> {
+        Session::start_with(arguments, &[])
+    }
+
+    /// The same with further variables in the program's environment.
+    pub fn start_with(arguments: &[&str], environment: &[(&str, &str)]) -> Option<Session> {
+        let xvfb = Xvfb::start(&[])?;
+        let folder = tempfile::tempdir().unwrap();
+        let (connection, screen) = x11rb::connect(Some(&xvfb.display)).unwrap();
+        let root = connection.setup().roots[screen].root;
+        let display = ("DISPLAY", xvfb.display.as_str());
+        let environment = [environment, &[display]].concat();
+        let program = Program::start(folder.path(), arguments, &environment);
+        let mut session = Session {
+            program,
+            connection,
+            root,
+            window: x11rb::NONE,
+            xvfb: Some(xvfb),
+            folder,
+        };
+        session.program.line("first frame");
+        session.window = wait_for("the window", || session.find());
+        session.focus();
+        Some(session)
+    }
+
+    /// The window of the program, once it can be seen.
+    fn find(&self) -> Option<Window> {
+        let tree = self.connection.query_tree(self.root).unwrap();
+        let children = tree.reply().unwrap().children;
+        children.into_iter().find(|&child| {
+            let attributes = self.connection.get_window_attributes(child).unwrap();
+            self.title_of(child).starts_with("firsthit ")
+                && attributes
+                    .reply()
+                    .is_ok_and(|attributes| attributes.map_state == MapState::VIEWABLE)
+        })
+    }
+
+    fn focus(&self) {
+        wait_for("the keyboard", || {
+            let connection = &self.connection;
+            connection
+                .set_input_focus(InputFocus::POINTER_ROOT, self.window, x11rb::CURRENT_TIME)
+                .unwrap();
+            let focus = connection.get_input_focus().unwrap().reply().unwrap().focus;
+            (focus == self.window).then_some(())
+        });
+    }
+
+    fn atom(&self, name: &str) -> u32 {
+        let atom = self.connection.intern_atom(false, name.as_bytes()).unwrap();
+        atom.reply().unwrap().atom
+    }
+
+    fn title_of(&self, window: Window) -> String {
+        let (name, text) = (self.atom("_NET_WM_NAME"), self.atom("UTF8_STRING"));
+        let property = self
+            .connection
+            .get_property(false, window, name, text, 0, 1000)
+            .unwrap();
+        property
+            .reply()
+            .map(|property| String::from_utf8(property.value).unwrap())
+            .unwrap_or_default()
+    }
+
+    pub fn title(&self) -> String {
+        self.title_of(self.window)
+    }
+
+    /// Waits for a title that holds each of `parts`.
+    pub fn titled(&self, parts: &[&str]) {
+        wait_for(&format!("a title with {parts:?}"), || {
+            let title = self.title();
+            parts.iter().all(|part| title.contains(part)).then_some(())
+        });
+    }
+
+    /// α as the title says it.
+    pub fn alpha(&self) -> f64 {
+        let title = self.title();
+        let (_, alpha) = title.split_once("α = ").unwrap();
+        alpha.split(' ').next().unwrap().parse().unwrap()
+    }
+
+    /// The keycode that gives `keysym`, and whether it needs Shift.
+    pub fn keycode(&self, keysym: u32) -> (u8, bool) {
+        let setup = self.connection.setup();
+        let (first, last) = (setup.min_keycode, setup.max_keycode);
+        let mapping = self
+            .connection
+            .get_keyboard_mapping(first, last - first + 1)
+            .unwrap()
+            .reply()
+            .unwrap();
+        let columns = usize::from(mapping.keysyms_per_keycode);
+        let at = |column: usize| {
+            let mut keys = mapping.keysyms.chunks(columns);
+            keys.position(|keysyms| keysyms.get(column) == Some(&keysym))
+        };
+        let (key, shift) = match at(0) {
+            Some(key) => (key, false),
+            None => (at(1).expect("a key with this symbol"), true),
+        };
+        (first + u8::try_from(key).unwrap(), shift)
+    }
+
+    fn fake(&self, event: u8, keycode: u8) {
+        self.connection
+            .xtest_fake_input(event, keycode, x11rb::CURRENT_TIME, self.root, 0, 0, 0)
+            .unwrap()
+            .check()
+            .unwrap();
+    }
+
+    /// Presses and releases the key at `keycode`.
+    pub fn press_code(&self, keycode: u8) {
+        self.fake(KEY_PRESS_EVENT, keycode);
+        self.fake(KEY_RELEASE_EVENT, keycode);
+    }
+
+    /// Presses and releases the key with the symbol `keysym`, with Shift where it needs it.
+    pub fn press(&self, keysym: u32) {
+        let (keycode, shift) = self.keycode(keysym);
+        if shift {
+            self.press_shifted(keycode);
+        } else {
+            self.press_code(keycode);
+        }
+    }
+
+    /// Presses the key at `keycode` while Shift is down.
+    pub fn press_shifted(&self, keycode: u8) {
+        let (shift, _) = self.keycode(SHIFT);
+        self.fake(KEY_PRESS_EVENT, shift);
+        self.press_code(keycode);
+        self.fake(KEY_RELEASE_EVENT, shift);
+    }
+
+    /// Types `keys`, each a character of ASCII.
+    pub fn type_keys(&self, keys: &str) {
+        for key in keys.chars() {
+            self.press(u32::from(key));
+        }
+    }
+
+    /// Gives the window another size.
+    pub fn resize(&self, width: u32, height: u32) {
+        let size = ConfigureWindowAux::new().width(width).height(height);
+        self.connection
+            .configure_window(self.window, &size)
+            .unwrap()
+            .check()
+            .unwrap();
+    }
+
+    pub fn size(&self) -> (usize, usize) {
+        let geometry = self.connection.get_geometry(self.window).unwrap();
+        let geometry = geometry.reply().unwrap();
+        (geometry.width.into(), geometry.height.into())
+    }
+
+    /// Takes the window from the screen as a window manager does that makes an icon of it, or puts it back.
+    pub fn iconify(&self, iconic: bool) {
+        let hidden = self.atom("_NET_WM_STATE_HIDDEN");
+        let state: &[u32] = if iconic { &[hidden] } else { &[] };
+        let property = self.atom("_NET_WM_STATE");
+        self.connection
+            .change_property32(
+                PropMode::REPLACE,
+                self.window,
+                property,
+                AtomEnum::ATOM,
+                state,
+            )
+            .unwrap();
+        let done = if iconic {
+            self.connection.unmap_window(self.window)
+        } else {
+            self.connection.map_window(self.window)
+        };
+        done.unwrap().check().unwrap();
+        if !iconic {
+            self.focus();
+        }
+    }
+
+    /// What the window shows, if it can be read.
+    fn pixels(&self) -> Option<Pixels> {
+        let (width, height) = self.size();
+        let image = self
+            .connection
+            .get_image(
+                ImageFormat::Z_PIXMAP,
+                self.window,
+                0,
+                0,
+                u16::try_from(width).unwrap(),
+                u16::try_from(height).unwrap(),
+                u32::MAX,
+            )
+            .unwrap()
+            .reply()
+            .ok()?;
+        // 24 bits deep, in 32 bits of little endian: blue first.
+        let bytes = image.data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]);
+        Some(Pixels {
+            width,
+            height,
+            bytes: bytes.collect(),
+        })
+    }
+
+    /// Waits until the window shows the picture of N = `size`, `stage` and `alpha`, as it was traced, byte for byte.
+    pub fn shows(&self, size: u32, stage: Stage, alpha: f64) {
+        let picture = traced(size, stage, alpha);
+        let start = Instant::now();
+        loop {
+            let (width, height) = self.size();
+            let expected = letterboxed(&picture, width, height);
+            let shown = self.pixels();
+            if shown.as_ref() == Some(&expected) {
+                return;
+            }
+            if start.elapsed() > DEADLINE {
+                let kept = shown.map(|shown| keep(&shown, &expected));
+                panic!("stage {stage} at α = {alpha} is not what the window shows: {kept:?}");
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// The picture in the window as a PNG in the tests' folder for temporary files, to be looked at.
+    pub fn screenshot(&self, name: &str) -> PathBuf {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        self.pixels().unwrap().save(&path);
+        path
+    }
+
+    /// Closes the window as a window manager does on a click.
+    pub fn close(&self) {
+        let protocols = self.atom("WM_PROTOCOLS");
+        let delete = self.atom("WM_DELETE_WINDOW");
+        let data = [delete, x11rb::CURRENT_TIME, 0, 0, 0];
+        let event = ClientMessageEvent::new(32, self.window, protocols, data);
+        let none = EventMask::NO_EVENT;
+        self.connection
+            .send_event(false, self.window, none, event)
+            .unwrap()
+            .check()
+            .unwrap();
+    }
+
+    /// Ends the X server at once.
+    pub fn crash_server(&mut self) {
+        self.xvfb.take().unwrap().crash();
+    }
+}
