@@ -1,4 +1,53 @@
-//! A **scene** seen at angle **α** in a **stage** is traced by a **kernel** into an **image**, and the image goes to a **screen** or a **file**.
+//! A **scene** seen at angle **α** in a **stage** is traced by a **kernel** into an **image**, and the image goes to a **screen** (a
+//! window, or offscreen) or into a **file**.
+//!
+//! ```
+//! use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+//!
+//! let scene = Scene::builtin();
+//! let mut tracer = Tracer::new(Kernel::Exact, 1)?;
+//! let mut image = Image::new(64)?;
+//! tracer.trace(&scene, Stage::Reflection, 0.3, &mut image)?;
+//!
+//! // The corner shows the background; rows go from the bottom to the top.
+//! assert_eq!(image.pixel(0, 0), Some([0.8, 0.8, 0.8]));
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("picture.png");
+//! image.save(&path)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From scene to screen
+//!
+//! Each bold word above is one type and one place, and each place knows only those before it: the tracer knows no OpenGL, the
+//! screen knows no spheres.
+//!
+//! | place | what is there |
+//! | --- | --- |
+//! | [`scene`] | spheres, tetrahedra, the surface, the light; TOML in, refusals with line and field; what exact arithmetic decides once |
+//! | [`Stage`] | the seven stages, from a test image to the animation |
+//! | [`camera`] | α: its frames, its sine and cosine |
+//! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
+//! | [`image`] | N × N pixels of linear floats; PNG, EXR and animated PNG out |
+//! | [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |
+//! | [`viewer`] | the window: keys, the clock of α, the redisplay |
+//!
+//! # What the picture is
+//!
+//! The picture is a mathematical function of scene, stage, α and N. An eye ray through the pixel (x, y) is the line through
+//! e = (sin α + u cos α, v, cos α − u sin α) along −w, with u = (x − N/2)/(N/2), v = (y − N/2)/(N/2) and w = (sin α, 3/10, cos α); sine and
+//! cosine are those of the f64 α taken exactly, and every number of a scene is its f64 taken exactly. What the ray meets first,
+//! whether a point is in shadow, what the surface mirrors: these are signs of real numbers, and touching counts as meeting. A
+//! sample is the real number that equation 4-1 gives, rounded once to the nearest f32. [`Kernel::Exact`] returns just that, on every
+//! machine, with any number of threads.
+//!
+//! # What was left out, and why
+//!
+//! - No epsilon: a solid is convex, so it is never tested against itself, and what coincides is decided exactly.
+//! - No general ray tracer: projection is parallel, light comes from one direction, the surface mirrors once. What the scene
+//!   does not need is not modelled.
+//! - No platform libm: sines and cosines are correctly rounded, highlights use arithmetic only, or `libm` in plain Rust.
+//! - No fused multiply-add: it would give other bits, or be slow, where the processor has none.
 
 pub mod camera;
 pub mod image;
@@ -6,6 +55,7 @@ pub mod scene;
 pub mod screen;
 mod stage;
 pub mod tracer;
+pub mod viewer;
 
 pub use image::Image;
 pub use scene::Scene;

@@ -8,6 +8,7 @@
 //! `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
 //! all their bits, those of signalling NaNs too.
 
+#[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
 mod offscreen;

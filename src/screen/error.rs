@@ -17,6 +17,10 @@ pub enum ScreenError {
         /// The Debian packages that bring it, separated by spaces.
         packages: &'static str,
     },
+    /// EGL does not exist on this kind of system.
+    #[cfg(target_vendor = "apple")]
+    #[error("this system has no EGL: capture with `--through none`, which needs no OpenGL")]
+    NoEgl,
     /// The library is there but gives no OpenGL 3.3 core context.
     #[error(
         "{library} gives no OpenGL 3.3 core context ({reason}): install a driver (Debian packages: {packages}), or capture with `--through none`, which needs no OpenGL"

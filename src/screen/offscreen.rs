@@ -6,6 +6,7 @@ use std::rc::Rc;
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
+#[cfg(not(target_vendor = "apple"))]
 use super::egl::Egl;
 use super::osmesa::OsMesa;
 use super::{Placement, Screen, ScreenError, check};
@@ -31,7 +32,10 @@ impl Through {
 
     fn open(self) -> Result<Box<dyn Context>, ScreenError> {
         Ok(match self {
+            #[cfg(not(target_vendor = "apple"))]
             Through::Egl => Box::new(Egl::open()?),
+            #[cfg(target_vendor = "apple")]
+            Through::Egl => return Err(ScreenError::NoEgl),
             Through::OsMesa => Box::new(OsMesa::open()?),
         })
     }

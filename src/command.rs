@@ -1,0 +1,89 @@
+//! The commands: what a person types, and what it makes the library do.
+
+mod arguments;
+mod capture;
+mod explain;
+mod passage;
+mod view;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use firsthit::image::{ImageError, SaveError};
+use firsthit::scene::{BUILTIN_TOML, SceneError};
+use firsthit::screen::ScreenError;
+use firsthit::tracer::TraceError;
+use firsthit::viewer::ViewerError;
+
+/// Traces a scene of solids on a glazed surface, and shows it in a window or writes it to files.
+///
+/// Without a command: view.
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    view: view::Arguments,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Open the viewer
+    View(view::Arguments),
+    /// Write pictures to files, without a window
+    Capture(capture::Arguments),
+    /// Work one pixel through, term by term
+    Explain(explain::Arguments),
+    /// Print the built-in scene as TOML, to start one's own from
+    Scene,
+}
+
+/// Why a command did not do what it was asked to. All but wrong usage are one line.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    #[error(transparent)]
+    Usage(#[from] clap::Error),
+    #[error("{}: cannot be read: {reason}: give the path of a scene file", path.display())]
+    Unreadable { path: PathBuf, reason: io::Error },
+    #[error("{}: {reason}", path.display())]
+    Scene { path: PathBuf, reason: SceneError },
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    #[error(transparent)]
+    Screen(#[from] ScreenError),
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    #[error(transparent)]
+    Viewer(#[from] ViewerError),
+    #[error("standard output cannot be written: {0}: send it elsewhere")]
+    StandardOutput(io::Error),
+}
+
+/// Does what the command line says.
+pub(crate) fn run() -> Result<(), Failure> {
+    let line = CommandLine::try_parse()?;
+    match line.command.unwrap_or(Command::View(line.view)) {
+        Command::View(arguments) => view::run(&arguments),
+        Command::Capture(arguments) => capture::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Scene => print(BUILTIN_TOML),
+    }
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    let mut output = io::stdout().lock();
+    match output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+    {
+        // Who closes a pipe has read enough.
+        Err(reason) if reason.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::StandardOutput(reason))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,117 @@
+//! Arguments that commands share.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::value_parser;
+use firsthit::camera::frame_angle;
+use firsthit::image::MAX_SIZE;
+use firsthit::{Kernel, Scene, Stage};
+
+use super::Failure;
+
+/// What is pictured, and how.
+#[derive(Args)]
+pub(crate) struct PictureArguments {
+    /// Pixels along a side of the picture
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = value_parser!(u32).range(1..=i64::from(MAX_SIZE)))]
+    pub(crate) size: u32,
+    /// A scene in TOML; the built-in scene if not given
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// How numbers are computed
+    #[arg(long, value_name = "NAME", default_value = Kernel::default().name(), value_parser = kernel())]
+    pub(crate) kernel: Kernel,
+    /// Threads to trace with; one a core if not given
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+}
+
+impl PictureArguments {
+    /// The scene of `--scene`, else the built-in one.
+    pub(crate) fn scene(&self) -> Result<Scene, Failure> {
+        let Some(path) = &self.scene else {
+            return Ok(Scene::builtin());
+        };
+        let text = read(path).map_err(|reason| Failure::Unreadable {
+            path: path.clone(),
+            reason,
+        })?;
+        Scene::from_toml(&text).map_err(|reason| Failure::Scene {
+            path: path.clone(),
+            reason,
+        })
+    }
+
+    /// The number of threads as the library takes it: 0 for one a core.
+    pub(crate) fn threads(&self) -> usize {
+        self.threads.map_or(0, NonZeroUsize::get)
+    }
+}
+
+/// More than any scene of 4096 solids takes; without a limit, a device or a video given by mistake would be read until memory is full.
+const MAX_SCENE_BYTES: u64 = 1 << 26;
+
+fn read(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(MAX_SCENE_BYTES + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_SCENE_BYTES {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
+        io::Error::other(format!("line {line} is not UTF-8"))
+    })
+}
+
+/// A stage by its number.
+pub(crate) fn stage(text: &str) -> Result<Stage, &'static str> {
+    text.parse()
+        .ok()
+        .and_then(Stage::from_number)
+        .ok_or("the stages are 1 to 7")
+}
+
+/// A number of radians, or of radians a second.
+pub(crate) fn finite(text: &str) -> Result<f64, &'static str> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err("a finite number is needed"),
+        Err(_) => Err("not a decimal number"),
+    }
+}
+
+/// The angle of one frame; one of the two at most, 0 if none.
+#[derive(Args)]
+#[group(multiple = false)]
+pub(crate) struct AngleArguments {
+    /// The angle α of the eye
+    #[arg(long, value_name = "RADIANS", allow_hyphen_values = true, value_parser = finite)]
+    alpha: Option<f64>,
+    /// A frame of the animation; every 21 it starts again
+    #[arg(long, value_name = "K")]
+    frame: Option<u64>,
+}
+
+impl AngleArguments {
+    pub(crate) fn alpha(&self) -> f64 {
+        self.alpha.or(self.frame.map(frame_angle)).unwrap_or(0.0)
+    }
+}
+
+/// A kernel by its name.
+fn kernel() -> impl TypedValueParser<Value = Kernel> {
+    PossibleValuesParser::new(Kernel::ALL.map(Kernel::name)).try_map(|name| {
+        Kernel::ALL
+            .into_iter()
+            .find(|kernel| kernel.name() == name)
+            .ok_or("no kernel has this name")
+    })
+}

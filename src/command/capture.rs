@@ -1,0 +1,183 @@
+//! `firsthit capture`: pictures into files, without a window.
+
+use std::borrow::Cow;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::error::ErrorKind;
+use firsthit::camera::frame_angle;
+use firsthit::image::{Animation, Format};
+use firsthit::{Image, Scene, Stage, Tracer};
+use indicatif::{ProgressBar, ProgressFinish};
+
+use super::Failure;
+use super::arguments::{AngleArguments, PictureArguments, stage};
+use super::passage::{Passage, Way};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The stage, 1 to 7
+    #[arg(long, value_name = "STAGE", value_parser = stage)]
+    stage: Stage,
+    #[command(flatten)]
+    angle: AngleArguments,
+    /// All frames from A to B, both included
+    #[arg(long, value_name = "A..B", value_parser = frames, conflicts_with_all = ["alpha", "frame"])]
+    frames: Option<RangeInclusive<u64>>,
+    #[command(flatten)]
+    picture: PictureArguments,
+    /// What the pixels pass through before they are written; egl if not given, else osmesa, else none, whichever works first
+    #[arg(long, value_name = "WAY", value_enum)]
+    through: Option<Way>,
+    /// The file to write: .png (8 bits, as displayed), .exr (every float bit for bit), .apng (an animation of --frames); with --frames, {} in the name of
+    /// a .png or .exr becomes the frame's number
+    #[arg(short, long, value_name = "PATH")]
+    output: PathBuf,
+}
+
+fn frames(text: &str) -> Result<RangeInclusive<u64>, &'static str> {
+    let (first, last) = text
+        .split_once("..")
+        .ok_or("two whole numbers with .. between them are needed, as in 0..20")?;
+    match (first.parse(), last.parse()) {
+        (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
+        (Ok(_), Ok(_)) => Err("the first frame comes after the last"),
+        _ => Err("both ends must be whole numbers from 0 to 18446744073709551615"),
+    }
+}
+
+/// What is to be written.
+enum Job {
+    Picture {
+        alpha: f64,
+        path: PathBuf,
+    },
+    /// Each frame into a file of its own, named by `pattern` with the frame's number for `{}`.
+    Pictures {
+        frames: RangeInclusive<u64>,
+        pattern: String,
+    },
+    Animation {
+        frames: RangeInclusive<u64>,
+        path: PathBuf,
+    },
+}
+
+impl Job {
+    /// What the arguments ask for; wrong usage where they do not fit each other.
+    fn new(arguments: &Arguments) -> Result<Job, clap::Error> {
+        let path = arguments.output.clone();
+        let format = Format::of(&path).map_err(wrong)?;
+        let has_place = path
+            .as_os_str()
+            .as_encoded_bytes()
+            .windows(2)
+            .any(|two| two == b"{}");
+        let shown = path.display();
+        match (format, arguments.frames.clone()) {
+            (Format::Apng, None) => Err(wrong(format!(
+                "{shown}: an .apng holds an animation: give --frames A..B, or choose .png or .exr"
+            ))),
+            (Format::Apng, Some(_)) if has_place => Err(wrong(format!(
+                "{shown}: an .apng holds all frames: leave {{}} out of its name"
+            ))),
+            (Format::Apng, Some(frames)) if count(&frames) > Animation::MAX_FRAMES => {
+                Err(wrong(format!(
+                    "{shown}: an .apng holds at most {} frames: give fewer, or choose .png or .exr",
+                    Animation::MAX_FRAMES
+                )))
+            }
+            (Format::Apng, Some(frames)) => Ok(Job::Animation { frames, path }),
+            (Format::Png | Format::Exr, None) if has_place => Err(wrong(format!(
+                "{shown}: {{}} stands for the number of one frame of many: give --frames A..B, or leave {{}} out"
+            ))),
+            (Format::Png | Format::Exr, None) => {
+                let alpha = arguments.angle.alpha();
+                Ok(Job::Picture { alpha, path })
+            }
+            (Format::Png | Format::Exr, Some(_)) if !has_place => Err(wrong(format!(
+                "{shown}: with --frames the name needs {{}}, which becomes the frame's number, as in frame-{{}}.png"
+            ))),
+            (Format::Png | Format::Exr, Some(frames)) => {
+                match path.into_os_string().into_string() {
+                    Ok(pattern) => Ok(Job::Pictures { frames, pattern }),
+                    Err(path) => Err(wrong(format!(
+                        "{}: with --frames the name must be UTF-8",
+                        path.display()
+                    ))),
+                }
+            }
+        }
+    }
+}
+
+/// Wrong usage, with the usage of this command below the message.
+fn wrong(message: impl std::fmt::Display) -> clap::Error {
+    Arguments::augment_args(clap::Command::new("firsthit capture"))
+        .error(ErrorKind::ValueValidation, message)
+}
+
+/// The way from an angle to the picture that is written.
+struct Capture {
+    scene: Scene,
+    stage: Stage,
+    tracer: Tracer,
+    image: Image,
+    passage: Passage,
+}
+
+impl Capture {
+    fn picture(&mut self, alpha: f64) -> Result<Cow<'_, Image>, Failure> {
+        self.tracer
+            .trace(&self.scene, self.stage, alpha, &mut self.image)?;
+        Ok(self.passage.pass(&self.image)?)
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let job = Job::new(arguments)?;
+    let picture = &arguments.picture;
+    let size = picture.size;
+    let mut capture = Capture {
+        scene: picture.scene()?,
+        stage: arguments.stage,
+        tracer: Tracer::new(picture.kernel, picture.threads())?,
+        image: Image::new(size)?,
+        passage: Passage::open(arguments.through, size)?,
+    };
+    match job {
+        Job::Picture { alpha, path } => capture.picture(alpha)?.save(path)?,
+        Job::Pictures { frames, pattern } => {
+            let digits = frames.end().to_string().len();
+            for frame in with_progress(frames) {
+                let path = pattern.replace("{}", &format!("{frame:0digits$}"));
+                capture.picture(frame_angle(frame))?.save(path)?;
+            }
+        }
+        Job::Animation { frames, path } => {
+            let mut animation = Animation::create(path, size, count(&frames))?;
+            for frame in with_progress(frames) {
+                animation.push(&*capture.picture(frame_angle(frame))?)?;
+            }
+            animation.finish()?;
+        }
+    }
+    // Said last: where the capture fails, one line says why, and no other.
+    if let Some(note) = capture.passage.note {
+        crate::say(&note);
+    }
+    Ok(())
+}
+
+/// The number of frames, or the largest number where that is one less.
+fn count(frames: &RangeInclusive<u64>) -> u64 {
+    (frames.end() - frames.start()).saturating_add(1)
+}
+
+/// The frames, with a bar on standard error that grows with them, if that is a terminal.
+fn with_progress(frames: RangeInclusive<u64>) -> impl Iterator<Item = u64> {
+    ProgressBar::new(count(&frames))
+        .with_finish(ProgressFinish::AndClear)
+        .wrap_iter(frames)
+}

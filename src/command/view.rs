@@ -1,0 +1,60 @@
+//! `firsthit view`: the viewer's window.
+
+use clap::Args;
+use clap::value_parser;
+use firsthit::Stage;
+use firsthit::viewer::{self, Event, Options, Pace};
+
+use super::arguments::{PictureArguments, finite, stage};
+use super::{Failure, print};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The stage to open on, 1 to 7
+    #[arg(long, value_name = "STAGE", default_value = "7", value_parser = stage)]
+    stage: Stage,
+    #[command(flatten)]
+    picture: PictureArguments,
+    #[command(flatten)]
+    pace: PaceArguments,
+    /// Leave after this many frames
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..))]
+    exit_after_frames: Option<u64>,
+}
+
+/// How α advances; one of the two at most.
+#[derive(Args)]
+#[group(multiple = false)]
+struct PaceArguments {
+    /// Turn by so much a second, whatever the number of frames; 1.5 if not given
+    #[arg(long, value_name = "RAD_PER_S", allow_hyphen_values = true, value_parser = finite)]
+    speed: Option<f64>,
+    /// Turn by so much at each redisplay instead
+    #[arg(long, value_name = "RAD", allow_hyphen_values = true, value_parser = finite)]
+    step: Option<f64>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let pace = match (arguments.pace.step, arguments.pace.speed) {
+        (Some(step), _) => Pace::Step(step),
+        (None, Some(speed)) => Pace::Speed(speed),
+        (None, None) => Pace::default(),
+    };
+    let picture = &arguments.picture;
+    let options = Options {
+        scene: picture.scene()?,
+        stage: arguments.stage,
+        size: picture.size,
+        kernel: picture.kernel,
+        threads: picture.threads(),
+        pace,
+        exit_after_frames: arguments.exit_after_frames,
+    };
+    viewer::run(options, &mut |event| match event {
+        Event::NotSaved(_) => crate::say(&event.to_string()),
+        // A person who closed the terminal still has the window.
+        Event::FirstFrame { .. } => drop(print(&format!("{}{event}\n", viewer::key_table()))),
+        _ => drop(print(&format!("{event}\n"))),
+    })?;
+    Ok(())
+}

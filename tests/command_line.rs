@@ -1,0 +1,692 @@
+//! What is typed on the command line, and what then appears: files, lines, exit statuses.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops at the first surprise"
+)]
+
+#[cfg(unix)]
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use exr::prelude::{Compression, FlatSamples, read_all_flat_layers_from_file};
+use firsthit::camera::frame_angle;
+use firsthit::image::display_byte;
+use firsthit::screen::{Offscreen, Through};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer, scene};
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_firsthit");
+
+/// The program, to be run in `folder`.
+fn program(folder: &TempDir) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.current_dir(folder);
+    command
+}
+
+/// The program under `sh`, after `setup`.
+fn program_after(setup: &str, folder: &TempDir) -> Command {
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &format!("{setup}; exec \"$0\" \"$@\""), PROGRAM])
+        .current_dir(folder);
+    command
+}
+
+/// The words of `line` as arguments.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split(' ')
+}
+
+/// Runs the program in `folder` with the words of `line`; it must succeed and say nothing.
+fn done(folder: &TempDir, line: &str) {
+    succeeded(
+        &program(folder).args(words(line)).output().unwrap(),
+        "",
+        line,
+    );
+}
+
+fn succeeded(output: &Output, standard_output: &str, what: &str) {
+    assert_eq!(text(&output.stderr), "", "{what}");
+    assert_eq!(text(&output.stdout), standard_output, "{what}");
+    assert_eq!(output.status.code(), Some(0), "{what}");
+}
+
+/// The program must have failed, with one line on standard error, which is returned, and nothing on standard output.
+fn failed(output: &Output, what: &str) -> String {
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{what}: {message}");
+    assert_eq!(message.lines().count(), 1, "{what}: {message}");
+    assert!(message.ends_with('\n'), "{what}: {message}");
+    assert_eq!(text(&output.stdout), "", "{what}");
+    message
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// The names in `folder`, hidden ones too, in order.
+fn names(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn bytes(folder: &TempDir, name: &str) -> Vec<u8> {
+    fs::read(folder.path().join(name)).unwrap()
+}
+
+/// What the library itself traces.
+fn traced(stage: u8, alpha: f64, size: u32) -> Image {
+    let mut image = Image::new(size).unwrap();
+    let stage = Stage::from_number(stage).unwrap();
+    Tracer::new(Kernel::default(), 1)
+        .unwrap()
+        .trace(&Scene::builtin(), stage, alpha, &mut image)
+        .unwrap();
+    image
+}
+
+/// The bytes of an 8-bit file of `image`: rows from the top.
+fn displayed(image: &Image) -> Vec<u8> {
+    let (size, mut bytes) = (image.size(), Vec::new());
+    for row in (0..size).rev() {
+        for column in 0..size {
+            bytes.extend(image.pixel(column, row).unwrap().map(display_byte));
+        }
+    }
+    bytes
+}
+
+fn png_reader(path: &Path) -> png::Reader<BufReader<File>> {
+    let decoder = png::Decoder::new(BufReader::new(File::open(path).unwrap()));
+    let reader = decoder.read_info().unwrap();
+    let kind = (reader.info().color_type, reader.info().bit_depth);
+    assert_eq!(kind, (png::ColorType::Rgb, png::BitDepth::Eight));
+    reader
+}
+
+fn next_frame(reader: &mut png::Reader<BufReader<File>>) -> Vec<u8> {
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    bytes
+}
+
+/// The samples of an EXR file as bits, in the order of [`Image::samples`].
+fn exr_bits(path: &Path) -> Vec<u32> {
+    let file = read_all_flat_layers_from_file(path).unwrap();
+    let [layer] = &file.layer_data[..] else {
+        panic!("{} parts", file.layer_data.len());
+    };
+    let (width, height) = (layer.size.width(), layer.size.height());
+    let channels = &layer.channel_data.list;
+    let mut bits = vec![0; width * height * 3];
+    assert_eq!(channels.len(), 3);
+    for channel in channels {
+        let place = ["R", "G", "B"]
+            .iter()
+            .position(|name| channel.name.eq_case_insensitive(name))
+            .unwrap();
+        let FlatSamples::F32(samples) = &channel.sample_data else {
+            panic!("not 32-bit floats");
+        };
+        for (i, sample) in samples.iter().enumerate() {
+            let (column, row) = (i % width, height - 1 - i / width);
+            bits[(row * width + column) * 3 + place] = sample.to_bits();
+        }
+    }
+    bits
+}
+
+fn bits(image: &Image) -> Vec<u32> {
+    image.samples().iter().map(|s| s.to_bits()).collect()
+}
+
+#[test]
+fn a_png_holds_what_the_display_shows() {
+    let folder = folder();
+    done(
+        &folder,
+        "capture --stage 6 --frame 4 --size 33 --through none -o a.PNG",
+    );
+    let mut reader = png_reader(&folder.path().join("a.PNG"));
+    assert_eq!(reader.info().size(), (33, 33));
+    assert!(!reader.info().is_animated());
+    assert_eq!(
+        next_frame(&mut reader),
+        displayed(&traced(6, frame_angle(4), 33))
+    );
+    assert_eq!(names(&folder), ["a.PNG"]);
+}
+
+#[test]
+fn an_exr_holds_every_sample() {
+    let folder = folder();
+    done(
+        &folder,
+        "capture --stage 5 --frame 13 --size 37 --through none -o a.exr",
+    );
+    let path = folder.path().join("a.exr");
+    assert_eq!(exr_bits(&path), bits(&traced(5, frame_angle(13), 37)));
+    let meta = exr::meta::MetaData::read_from_file(&path, true).unwrap();
+    assert_eq!(meta.headers.len(), 1);
+    assert!(!meta.headers[0].blocks.has_tiles());
+    assert!(!matches!(
+        meta.headers[0].compression,
+        Compression::Uncompressed
+    ));
+    assert_eq!(names(&folder), ["a.exr"]);
+}
+
+#[test]
+fn an_apng_plays_its_frames_without_end() {
+    let folder = folder();
+    done(
+        &folder,
+        "capture --stage 7 --frames 19..22 --size 21 --through none -o a.apng",
+    );
+    let mut reader = png_reader(&folder.path().join("a.apng"));
+    let animation = reader.info().animation_control.unwrap();
+    assert_eq!((animation.num_frames, animation.num_plays), (4, 0));
+    for frame in 19..=22 {
+        assert_eq!(
+            next_frame(&mut reader),
+            displayed(&traced(7, frame_angle(frame), 21)),
+            "frame {frame}"
+        );
+        let control = reader.info().frame_control.unwrap();
+        let delay = u32::from(control.delay_num) * 1000 / u32::from(control.delay_den);
+        assert_eq!(delay, 200);
+        assert_eq!((control.width, control.height), (21, 21));
+    }
+    assert_eq!(names(&folder), ["a.apng"]);
+}
+
+#[test]
+fn each_frame_is_named_with_as_many_digits_as_the_last() {
+    let folder = folder();
+    let line = "capture --stage 6 --size 9 --through none --frames";
+    done(&folder, &format!("{line} 8..11 -o {{}}-f{{}}.exr"));
+    assert_eq!(
+        names(&folder),
+        ["08-f08.exr", "09-f09.exr", "10-f10.exr", "11-f11.exr"]
+    );
+    for frame in 8..=11 {
+        let path = folder.path().join(format!("{frame:02}-f{frame:02}.exr"));
+        assert_eq!(exr_bits(&path), bits(&traced(6, frame_angle(frame), 9)));
+    }
+
+    let folder = self::folder();
+    let (first, last) = (u64::MAX - 1, u64::MAX);
+    done(&folder, &format!("{line} {first}..{last} -o {{}}.png"));
+    assert_eq!(names(&folder), [first, last].map(|k| format!("{k}.png")));
+    let mut reader = png_reader(&folder.path().join(format!("{last}.png")));
+    // 2⁶⁴ − 1 is 15 more than a multiple of 21.
+    assert_eq!(
+        next_frame(&mut reader),
+        displayed(&traced(6, frame_angle(15), 9))
+    );
+}
+
+#[test]
+fn alpha_is_any_finite_number() {
+    let folder = folder();
+    let line = "capture --stage 4 --size 8 --through none -o a.exr";
+    for (option, alpha) in [
+        ("", 0.0),
+        (" --alpha 0", 0.0),
+        (" --alpha 0.3", 0.3),
+        (" --alpha -1.5", -1.5),
+        (" --alpha=-.5", -0.5),
+        (" --alpha 1e300", 1e300),
+        (" --alpha -1e-5", -1e-5),
+        (" --alpha 5e-324", 5e-324),
+        (" --frame 0", 0.0),
+        (" --frame 20", 6.0),
+        (" --frame 21", 0.0),
+        // 15 more than a multiple of 21.
+        (" --frame 18446744073709551615", 4.5),
+    ] {
+        done(&folder, &format!("{line}{option}"));
+        assert_eq!(
+            exr_bits(&folder.path().join("a.exr")),
+            bits(&traced(4, alpha, 8)),
+            "{option}"
+        );
+    }
+}
+
+#[test]
+fn wrong_usage_is_status_2_and_writes_nothing() {
+    let folder = folder();
+    for line in [
+        "capture --stage 6",
+        "capture -o a.png",
+        "capture --stage 0 -o a.png",
+        "capture --stage 8 -o a.png",
+        "capture --stage six -o a.png",
+        "capture --stage 6 --size 0 -o a.png",
+        "capture --stage 6 --size 16385 -o a.png",
+        "capture --stage 6 --size 1.5 -o a.png",
+        "capture --stage 6 --threads 0 -o a.png",
+        "capture --stage 6 --kernel none -o a.png",
+        "capture --stage 6 --through glx -o a.png",
+        "capture --stage 6 --alpha inf -o a.png",
+        "capture --stage 6 --alpha NaN -o a.png",
+        "capture --stage 6 --alpha 1e999 -o a.png",
+        "capture --stage 6 --alpha x -o a.png",
+        "capture --stage 6 --alpha -o a.png",
+        "capture --stage 6 --frame -1 -o a.png",
+        "capture --stage 6 --frame 18446744073709551616 -o a.png",
+        "capture --stage 6 --alpha 1 --frame 1 -o a.png",
+        "capture --stage 6 --alpha 1 --frames 1..2 -o a{}.png",
+        "capture --stage 6 --frame 1 --frames 1..2 -o a{}.png",
+        "capture --stage 6 --frames 2..1 -o a{}.png",
+        "capture --stage 6 --frames 2 -o a{}.png",
+        "capture --stage 6 --frames 0.. -o a{}.png",
+        "capture --stage 6 --frames -1..2 -o a{}.png",
+        "capture --stage 6 --frames 1..2 -o a.png",
+        "capture --stage 6 --frames 1..2 -o a.exr",
+        "capture --stage 6 --frames 1..2 -o a{}.apng",
+        "capture --stage 6 --frames 0..1073741824 -o missing/a.apng",
+        "capture --stage 6 --frame 1 -o a.apng",
+        "capture --stage 6 --frame 1 -o a{}.png",
+        "capture --stage 6 -o a.jpeg",
+        "capture --stage 6 -o png",
+        "capture --stage 6 -o .png",
+        "capture --stage 6 -o ",
+        // Told before the scene is looked for.
+        "capture --stage 6 --scene missing.toml -o a.jpeg",
+        "view --speed 1 --step 1",
+        "view --speed inf",
+        "view --stage 8",
+        "view --exit-after-frames 0",
+        "--stage 8",
+        "--stage 3 scene",
+        "scene 1",
+        "draw",
+    ] {
+        let output = program(&folder).args(words(line)).output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(message.starts_with("error: "), "{line}: {message}");
+        assert_eq!(text(&output.stdout), "", "{line}");
+        assert_eq!(names(&folder), [""; 0], "{line}");
+    }
+}
+
+#[test]
+fn a_scene_that_cannot_be_had_is_status_1_and_writes_nothing() {
+    let folder = folder();
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    fs::create_dir(folder.path().join("folder.toml")).unwrap();
+    write("latin.toml", b"# first\n# caf\xe9\n");
+    write("unknown.toml", b"background = [0.8, 0.8, 0.8]\nfog = 1\n");
+    let before = names(&folder);
+    for (scene, said) in [
+        ("missing.toml", "missing.toml: cannot be read: "),
+        ("folder.toml", "folder.toml: cannot be read: "),
+        (
+            "latin.toml",
+            "latin.toml: cannot be read: line 2 is not UTF-8",
+        ),
+        ("unknown.toml", "unknown.toml: line 2: fog: "),
+    ] {
+        for line in ["view --scene", "capture --stage 6 -o a.png --scene"] {
+            let output = program(&folder)
+                .args(words(line))
+                .arg(scene)
+                .output()
+                .unwrap();
+            let message = failed(&output, scene);
+            assert!(message.contains(said), "{message}");
+            assert_eq!(names(&folder), before, "{line} {scene}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_file_is_what_is_traced() {
+    let folder = folder();
+    let text = "[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\ncolor = [1.0, 0.0, 0.0]\n";
+    fs::write(folder.path().join("ball.toml"), text).unwrap();
+    done(
+        &folder,
+        "capture --stage 2 --size 16 --scene ball.toml --through none -o a.exr",
+    );
+    let mut image = Image::new(16).unwrap();
+    Tracer::new(Kernel::default(), 1)
+        .unwrap()
+        .trace(
+            &Scene::from_toml(text).unwrap(),
+            Stage::Spheres,
+            0.0,
+            &mut image,
+        )
+        .unwrap();
+    assert_eq!(exr_bits(&folder.path().join("a.exr")), bits(&image));
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_status_1_and_one_line() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("folder.png")).unwrap();
+    fs::write(folder.path().join("kept.png"), "old").unwrap();
+    let mut permissions = fs::metadata(folder.path().join("kept.png"))
+        .unwrap()
+        .permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(folder.path().join("kept.png"), permissions).unwrap();
+    let before = names(&folder);
+    let options = "capture --stage 6 --size 8 -o";
+    for (output, said) in [
+        ("missing/a.png", "missing/a.png: cannot be written: "),
+        ("missing\nline/a.png", "missing\\nline/a.png: "),
+        ("folder.png", "folder.png: this is a folder or a device"),
+        ("kept.png", "kept.png: this file is read-only"),
+        (&format!("{}.png", "n".repeat(300)), "cannot be written: "),
+    ] {
+        let output = program(&folder)
+            .args(words(options))
+            .arg(output)
+            .output()
+            .unwrap();
+        let message = failed(&output, said);
+        assert!(message.contains(said), "{message}");
+        assert_eq!(names(&folder), before, "{said}");
+    }
+    assert_eq!(bytes(&folder, "kept.png"), b"old");
+
+    // The first of very many frames fails: none but it was ever thought of.
+    let line = format!("{options} missing/{{}}.png --frames 0..{}", u64::MAX);
+    failed(
+        &program(&folder).args(words(&line)).output().unwrap(),
+        &line,
+    );
+    let line = format!("{options} missing/a.apng --frames 0..9");
+    failed(
+        &program(&folder).args(words(&line)).output().unwrap(),
+        &line,
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn where_the_disk_refuses_nothing_is_left() {
+    for (name, frames) in [
+        ("a.png", ""),
+        ("a.exr", ""),
+        ("{}.exr", " --frames 3..4"),
+        ("a.apng", " --frames 3..4"),
+    ] {
+        let folder = folder();
+        let old = name.replace("{}", "3");
+        fs::write(folder.path().join(&old), "old").unwrap();
+        // Files may grow to 4 KiB; beyond, a write fails as it does on a full disk.
+        let output = program_after("trap '' XFSZ; ulimit -f 8", &folder)
+            .args(words(&format!(
+                "capture --stage 6 --size 500 --through none -o {name}{frames}"
+            )))
+            .output()
+            .unwrap();
+        let message = failed(&output, name);
+        assert!(
+            message.contains(&format!("{old}: cannot be written: File too large")),
+            "{message}"
+        );
+        assert!(message.contains("make room"), "{message}");
+        assert_eq!(names(&folder), [&*old]);
+        assert_eq!(bytes(&folder, &old), b"old");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_new_file_has_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    for (umask, mode) in [("000", 0o666), ("022", 0o644), ("077", 0o600)] {
+        let folder = folder();
+        for (name, frames) in [("a.png", ""), ("a.exr", ""), ("a.apng", " --frames 0..1")] {
+            let output = program_after(&format!("umask {umask}"), &folder)
+                .args(words(&format!(
+                    "capture --stage 1 --size 4 --through none -o {name}{frames}"
+                )))
+                .output()
+                .unwrap();
+            succeeded(&output, "", name);
+            let metadata = fs::metadata(folder.path().join(name)).unwrap();
+            assert_eq!(metadata.permissions().mode() & 0o777, mode, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_whole() {
+    let folder = folder();
+    let line = "capture --stage 6 --size 8 --through none -o";
+    done(&folder, &format!("{line} new.png"));
+    fs::write(folder.path().join("old.png"), [7; 100_000]).unwrap();
+    done(&folder, &format!("{line} old.png"));
+    assert_eq!(bytes(&folder, "old.png"), bytes(&folder, "new.png"));
+    assert_eq!(names(&folder), ["new.png", "old.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_followed_but_what_is_no_file_stays() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    use std::os::unix::net::UnixListener;
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("elsewhere")).unwrap();
+    fs::write(at("elsewhere/old"), "old").unwrap();
+    symlink("elsewhere/old", at("link.png")).unwrap();
+    // In place of a device: where this fails for an administrator, it must not be at the cost of a real one.
+    let _socket = UnixListener::bind(at("elsewhere/socket")).unwrap();
+    symlink("elsewhere/socket", at("socket.png")).unwrap();
+    let line = "capture --stage 6 --size 8 --through none -o";
+    done(&folder, &format!("{line} new.png"));
+    done(&folder, &format!("{line} link.png"));
+    assert!(fs::symlink_metadata(at("link.png")).unwrap().is_symlink());
+    assert_eq!(bytes(&folder, "elsewhere/old"), bytes(&folder, "new.png"));
+
+    let line = format!("{line} socket.png");
+    let message = failed(
+        &program(&folder).args(words(&line)).output().unwrap(),
+        &line,
+    );
+    assert!(message.contains("a folder or a device"), "{message}");
+    let kept = fs::metadata(at("elsewhere/socket")).unwrap();
+    assert!(kept.file_type().is_socket());
+    assert_eq!(
+        names(&folder),
+        ["elsewhere", "link.png", "new.png", "socket.png"]
+    );
+}
+
+#[test]
+fn every_way_gives_the_same_bytes() {
+    for (name, through) in [("egl", Through::Egl), ("osmesa", Through::OsMesa)] {
+        if let Err(error) = Offscreen::open(through, 8) {
+            assert!(std::env::var_os("CI").is_none(), "{error}");
+            eprintln!("skipped: capture --through {name}: {error}");
+            continue;
+        }
+        for (output, frames) in [
+            ("a.png", ""),
+            ("a.exr", ""),
+            ("a.apng", " --frames 5..6"),
+            ("{}.exr", " --frames 5..6"),
+        ] {
+            let folders = [name, "none"].map(|way| {
+                let folder = folder();
+                let line =
+                    format!("capture --stage 6 --size 65 --through {way} -o {output}{frames}");
+                let output = program(&folder).args(words(&line)).output().unwrap();
+                assert_eq!(
+                    output.status.code(),
+                    Some(0),
+                    "{line}: {}",
+                    text(&output.stderr)
+                );
+                folder
+            });
+            let written = names(&folders[0]);
+            assert_eq!(written, names(&folders[1]));
+            assert!(!written.is_empty());
+            for file in written {
+                assert_eq!(
+                    bytes(&folders[0], &file),
+                    bytes(&folders[1], &file),
+                    "{name}: {file}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_way_standard_error_says_which_was_taken() {
+    let folder = folder();
+    let line = "capture --stage 6 --size 65 -o a.exr";
+    let output = program(&folder).args(words(line)).output().unwrap();
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    let line = message
+        .lines()
+        .find(|line| line.starts_with("firsthit: captured through "))
+        .unwrap();
+    let works = |through| Offscreen::open(through, 65).is_ok();
+    let way = if works(Through::Egl) {
+        "egl"
+    } else if works(Through::OsMesa) {
+        "osmesa"
+    } else {
+        "none"
+    };
+    assert!(line.contains(&format!("through {way}, ")), "{line}");
+    assert_eq!(
+        exr_bits(&folder.path().join("a.exr")),
+        bits(&traced(6, 0.0, 65))
+    );
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_number_of_threads() {
+    let folder = folder();
+    for threads in [1, 2, 8] {
+        for (format, frames) in [("png", ""), ("exr", ""), ("apng", " --frames 0..2")] {
+            done(
+                &folder,
+                &format!(
+                    "capture --stage 6 --size 150 --threads {threads} --through none -o {threads}.{format}{frames}"
+                ),
+            );
+            assert_eq!(
+                bytes(&folder, &format!("{threads}.{format}")),
+                bytes(&folder, &format!("1.{format}")),
+                "{threads} threads, {format}"
+            );
+        }
+    }
+}
+
+#[test]
+fn scene_prints_the_built_in_scene() {
+    let output = program(&folder()).arg("scene").output().unwrap();
+    succeeded(&output, scene::BUILTIN_TOML, "scene");
+    assert_eq!(
+        Scene::from_toml(&text(&output.stdout)).unwrap(),
+        Scene::builtin()
+    );
+}
+
+#[test]
+fn a_pipe_that_is_closed_is_no_failure() {
+    for line in ["scene", "--help", "capture --help", "--version"] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = program(&folder())
+            .args(words(line))
+            .stdout(writer)
+            .output()
+            .unwrap();
+        succeeded(&output, "", line);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_standard_output_that_is_full_is_a_failure() {
+    let output = program(&folder())
+        .arg("scene")
+        .stdout(File::create("/dev/full").unwrap())
+        .output()
+        .unwrap();
+    let message = failed(&output, "scene");
+    assert!(
+        message.contains("standard output cannot be written"),
+        "{message}"
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_command_it_is_the_viewer() {
+    let run = |line: &str| {
+        let output = program(&folder())
+            .args(words(line).filter(|word| !word.is_empty()))
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .output()
+            .unwrap();
+        failed(&output, line)
+    };
+    assert_eq!(run(""), run("view"));
+    assert_eq!(
+        run("--stage 3 --step -0.3"),
+        run("view --stage 3 --step -0.3")
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn names_need_not_be_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = folder();
+    let name = OsStr::from_bytes(b"caf\xe9.png");
+    let line = "capture --stage 1 --size 4 --through none -o";
+    let output = program(&folder)
+        .args(words(line))
+        .arg(name)
+        .output()
+        .unwrap();
+    succeeded(&output, "", line);
+    assert!(folder.path().join(name).is_file());
+
+    // The frame's number is put into text only.
+    let output = program(&folder)
+        .args(words(line))
+        .arg(OsStr::from_bytes(b"\xe9{}.png"))
+        .args(["--frames", "1..2"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+}
