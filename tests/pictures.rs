@@ -1,0 +1,88 @@
+//! Promise: the same bytes everywhere. A checksum for each kernel and stage, made once, holds on every machine, at every number of
+//! threads, in debug and release, on every architecture.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test stops at the first surprise"
+)]
+
+use firsthit::camera::frame_angle;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+const SIZE: u32 = 125;
+
+/// FNV-1a over the samples' bytes, least significant first.
+fn checksum(image: &Image) -> u64 {
+    let bytes = image
+        .samples()
+        .iter()
+        .flat_map(|sample| sample.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+fn picture(kernel: Kernel, stage: Stage, frame: u64, threads: usize) -> u64 {
+    let mut image = Image::new(SIZE).unwrap();
+    let mut tracer = Tracer::new(kernel, threads).unwrap();
+    tracer
+        .trace(&Scene::builtin(), stage, frame_angle(frame), &mut image)
+        .unwrap();
+    checksum(&image)
+}
+
+/// The stages of the built-in scene as the picture's definition has them, at frame 0; then stage 6 at frames 3, 10 and 17.
+const TRUE_PICTURES: [(Stage, u64, u64); 10] = [
+    (Stage::Image, 0, 0x47ae_6df5_9afb_3219),
+    (Stage::Spheres, 0, 0xd1e0_98b3_224c_8fb7),
+    (Stage::Tetrahedron, 0, 0x93ba_9595_b23e_ff9e),
+    (Stage::Shading, 0, 0x8ebc_7fab_ed27_401b),
+    (Stage::Shadow, 0, 0x7154_abed_7a4a_ebd5),
+    (Stage::Reflection, 0, 0x8f57_a9f3_0a2e_fe64),
+    (Stage::Animation, 0, 0x8f57_a9f3_0a2e_fe64),
+    (Stage::Reflection, 3, 0x01dc_1d75_bdfb_c395),
+    (Stage::Reflection, 10, 0x5071_0d54_fc11_f2be),
+    (Stage::Reflection, 17, 0x0bf1_cc6c_6a2a_ee7a),
+];
+
+#[test]
+fn the_true_pictures() {
+    for kernel in [Kernel::Exact, Kernel::Reference] {
+        for (stage, frame, expected) in TRUE_PICTURES {
+            let got = picture(kernel, stage, frame, 2);
+            assert_eq!(
+                got,
+                expected,
+                "{} stage {stage} frame {frame}: {got:#018x}",
+                kernel.name()
+            );
+        }
+    }
+}
+
+/// The kernels that may be wrong are wrong in the same way everywhere: stage 6 at frame 3.
+const OTHER_PICTURES: [(Kernel, u64); 2] = [
+    (Kernel::Fast, 0x20d0_d01c_f585_8896),
+    (Kernel::Double, 0x01dc_1d75_bdfb_c395),
+];
+
+#[test]
+fn the_other_kernels() {
+    for (kernel, expected) in OTHER_PICTURES {
+        let got = picture(kernel, Stage::Reflection, 3, 2);
+        assert_eq!(got, expected, "{}: {got:#018x}", kernel.name());
+    }
+}
+
+#[test]
+fn any_number_of_threads() {
+    for (stage, frame, expected) in TRUE_PICTURES {
+        for threads in 1..=8 {
+            assert_eq!(
+                picture(Kernel::Exact, stage, frame, threads),
+                expected,
+                "{threads} threads"
+            );
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Promise: the README shows what the program does: its pictures are the program's, its keys are the viewer's.
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+
+use firsthit::camera::frame_angle;
+use firsthit::image::display_byte;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer, viewer};
+
+/// The pictures under tests/images, each a stage at a frame of the animation.
+const PICTURES: [(&str, Stage, u64); 7] = [
+    ("figure-2-1", Stage::Image, 0),
+    ("figure-3-1-spheres", Stage::Spheres, 0),
+    ("figure-3-1-tetrahedron", Stage::Tetrahedron, 0),
+    ("figure-4-3", Stage::Shading, 0),
+    ("section-5-1", Stage::Shadow, 0),
+    ("figure-6-1", Stage::Reflection, 0),
+    ("figure-6-2", Stage::Reflection, 7),
+];
+
+fn file(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+#[test]
+fn its_pictures_are_traced_pictures() {
+    let mut tracer = Tracer::new(Kernel::Exact, 0).unwrap();
+    let mut image = Image::new(500).unwrap();
+    for (name, stage, frame) in PICTURES {
+        let png = BufReader::new(File::open(file(&format!("tests/images/{name}.png"))).unwrap());
+        let mut reader = png::Decoder::new(png).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+
+        tracer
+            .trace(&Scene::builtin(), stage, frame_angle(frame), &mut image)
+            .unwrap();
+        let rows = image.samples().chunks(3 * 500).rev();
+        let expected: Vec<u8> = rows.flatten().copied().map(display_byte).collect();
+        assert!(bytes == expected, "{name}");
+    }
+}
+
+#[test]
+fn it_names_every_picture_and_every_key() {
+    let readme = fs::read_to_string(file("README.md")).unwrap();
+    for (name, ..) in PICTURES {
+        assert!(
+            readme.contains(&format!("(tests/images/{name}.png)")),
+            "{name}"
+        );
+    }
+    for line in viewer::key_table().lines() {
+        let (keys, does) = line.split_once("  ").unwrap();
+        let row = format!("| {} | {} |", keys, does.trim());
+        assert!(readme.contains(&row), "{row}");
+    }
+}
