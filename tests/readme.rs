@@ -58,3 +58,14 @@ fn it_names_every_picture_and_every_key() {
         assert!(readme.contains(&row), "{row}");
     }
 }
+
+#[test]
+fn its_worked_pixel_is_what_explain_says() {
+    let tracer = Tracer::new(Kernel::Exact, 1).unwrap();
+    let text = tracer
+        .explain(&Scene::builtin(), Stage::Reflection, 0.0, 500, (255, 202))
+        .unwrap();
+    let readme = fs::read_to_string(file("README.md")).unwrap();
+    let indented: String = text.lines().map(|line| format!("    {line}\n")).collect();
+    assert!(readme.contains(&indented), "{indented}");
+}

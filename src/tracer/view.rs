@@ -193,15 +193,16 @@ impl<R: Real> View<R> {
         } else {
             &crossings.direct
         };
-        let light = -frame.turn(scene.light().scaled_direction());
-        let light = if mirror.is_some() {
-            Vector::new(light.x, -light.y, light.z)
-        } else {
-            light
-        };
+        let direction = scene.light().scaled_direction();
+        let turned = -frame.turn(direction);
         let to_light = Direction {
-            vector: light,
-            squared_length: light.squared_length(),
+            vector: if mirrored {
+                Vector::new(turned.x, -turned.y, turned.z)
+            } else {
+                turned
+            },
+            // No turning changes it, and without one less is rounded.
+            squared_length: Vector::exact(direction).squared_length(),
         };
         let spheres =
             scene
