@@ -1,0 +1,156 @@
+//! Promise: an explanation is of the pixel that is traced, with every kernel, in every stage.
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use std::process::Command;
+
+use firsthit::image::display_byte;
+use firsthit::tracer::{Decision, TraceError};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+const SIZE: u32 = 48;
+
+/// What follows `about` on its line.
+fn line<'a>(text: &'a str, about: &str) -> Option<&'a str> {
+    let mut lines = text.lines().filter(|line| line.starts_with(about));
+    lines.next().map(|line| line[about.len()..].trim())
+}
+
+#[test]
+fn it_ends_in_the_samples_and_bytes_of_the_picture() {
+    let scene = Scene::builtin();
+    for kernel in [
+        Kernel::Exact,
+        Kernel::Fast,
+        Kernel::Double,
+        Kernel::Reference,
+    ] {
+        let mut tracer = Tracer::new(kernel, 1).unwrap();
+        for stage in Stage::ALL {
+            let mut image = Image::new(SIZE).unwrap();
+            let decisions = tracer
+                .trace_with_decisions(&scene, stage, 0.6, &mut image)
+                .unwrap();
+            for index in (0..SIZE * SIZE).step_by(7) {
+                let pixel = (index % SIZE, index / SIZE);
+                let text = tracer.explain(&scene, stage, 0.6, SIZE, pixel).unwrap();
+                let [r, g, b] = image.pixel(pixel.0, pixel.1).unwrap();
+                assert_eq!(
+                    line(&text, "samples"),
+                    Some(&*format!("{r:?} {g:?} {b:?}")),
+                    "{text}"
+                );
+                let [r, g, b] = [r, g, b].map(display_byte);
+                assert_eq!(
+                    line(&text, "bytes"),
+                    Some(&*format!("{r} {g} {b}")),
+                    "{text}"
+                );
+                says_what_was_decided(decisions[index as usize], &text);
+            }
+        }
+    }
+}
+
+/// The words of the explanation against the decision.
+fn says_what_was_decided(decision: Decision, text: &str) {
+    let shown: Vec<&str> = text
+        .lines()
+        .filter(|line| line.starts_with("shows"))
+        .collect();
+    let (last, in_shadow) = match decision {
+        Decision::Quadrant(_) => return assert!(line(text, "quadrant").is_some(), "{text}"),
+        Decision::Background => ("the background", false),
+        Decision::Surface => ("the surface", false),
+        Decision::SurfaceInShadow => ("the surface", true),
+        Decision::Solid(seen) | Decision::Mirrored(seen) => {
+            let name = if seen.solid < 2 {
+                "sphere"
+            } else {
+                "tetrahedron"
+            };
+            (name, seen.in_shadow)
+        }
+    };
+    assert!(
+        shown.last().unwrap()["shows".len()..]
+            .trim()
+            .starts_with(last),
+        "{text}"
+    );
+    assert_eq!(text.contains("\nin shadow"), in_shadow, "{text}");
+    assert_eq!(
+        text.contains("mirrored\n"),
+        matches!(decision, Decision::Mirrored(_)),
+        "{text}"
+    );
+}
+
+#[test]
+fn it_tells_the_arithmetic_that_decided() {
+    let scene = Scene::builtin();
+    let by = |kernel, pixel| {
+        let tracer = Tracer::new(kernel, 1).unwrap();
+        line(
+            &tracer
+                .explain(&scene, Stage::Reflection, 0.0, 500, pixel)
+                .unwrap(),
+            "decided by",
+        )
+        .unwrap()
+        .to_owned()
+    };
+    assert!(by(Kernel::Exact, (0, 0)).starts_with("f64 with a bound"));
+    assert!(
+        by(Kernel::Exact, (255, 202)).starts_with("double-doubles"),
+        "the mirrored silhouette touches here"
+    );
+    assert!(by(Kernel::Reference, (0, 0)).starts_with("double-doubles"));
+    assert!(by(Kernel::Fast, (0, 0)).starts_with("f32"));
+}
+
+#[test]
+fn a_pixel_outside_of_the_picture_is_refused() {
+    let tracer = Tracer::new(Kernel::Exact, 1).unwrap();
+    for pixel in [(SIZE, 0), (0, SIZE), (u32::MAX, u32::MAX)] {
+        let refused = tracer.explain(&Scene::builtin(), Stage::Reflection, 0.0, SIZE, pixel);
+        assert!(matches!(refused, Err(TraceError::Pixel { .. })));
+    }
+}
+
+#[test]
+fn the_command_prints_it() {
+    let program = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_firsthit"))
+            .args(arguments)
+            .output()
+            .unwrap()
+    };
+    let output = program(&[
+        "explain", "20", "30", "--stage", "6", "--frame", "2", "--size", "48", "--kernel", "double",
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    let tracer = Tracer::new(Kernel::Double, 1).unwrap();
+    let text = tracer
+        .explain(&Scene::builtin(), Stage::Reflection, 0.6, 48, (20, 30))
+        .unwrap();
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), text);
+
+    let refused = program(&["explain", "20", "48", "--stage", "6", "--size", "48"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(refused.stdout.is_empty());
+    assert_eq!(
+        String::from_utf8(refused.stderr).unwrap().lines().count(),
+        1
+    );
+    assert_eq!(
+        program(&["explain", "-1", "0", "--stage", "6"])
+            .status
+            .code(),
+        Some(2)
+    );
+    assert_eq!(
+        program(&["explain", "1", "--stage", "6"]).status.code(),
+        Some(2)
+    );
+    assert_eq!(program(&["explain", "1", "1"]).status.code(), Some(2));
+}
