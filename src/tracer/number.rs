@@ -1,5 +1,7 @@
 //! The abstract number that every formula is written over, and the numbers that kernels are made of.
 
+#[cfg(test)]
+mod agreement;
 mod bounded;
 mod double_double;
 mod expression;
@@ -139,6 +141,28 @@ impl Real for f32 {
 /// The sample that both ends of an enclosure round to; `None` where they differ.
 fn round_enclosure(lower: f32, upper: f32) -> Option<f32> {
     (lower == upper).then_some(lower + 0.0)
+}
+
+/// high + low, where high is the f64 nearest to it, rounded to the nearest f32, ties to even.
+fn round_sum(high: f64, low: f64) -> f32 {
+    let rounded = high as f32;
+    let between = high - f64::from(rounded);
+    // Only where high itself is halfway between two f32s, or on one, does low have a say: halfway it breaks the tie.
+    let neighbour = if between > 0.0 {
+        rounded.next_up()
+    } else {
+        rounded.next_down()
+    };
+    let halfway = between != 0.0 && between.abs() == (f64::from(neighbour) - high).abs();
+    if !halfway || low == 0.0 {
+        return rounded;
+    }
+    let (lower, upper) = if rounded < neighbour {
+        (rounded, neighbour)
+    } else {
+        (neighbour, rounded)
+    };
+    if low > 0.0 { upper } else { lower }
 }
 
 /// Whether all of these hold: one that certainly does not makes every doubt about the others idle.

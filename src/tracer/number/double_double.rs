@@ -17,7 +17,7 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::bounded::{Bounded, ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
-use super::{Doubt, Real, round_enclosure};
+use super::{Doubt, Real, round_enclosure, round_sum};
 use crate::camera;
 
 /// Above 3u² + 13u³.
@@ -32,9 +32,9 @@ const NO_UNDERFLOW: f64 = 1e-270;
 /// The truth lies within `error` of `high` + `low`, where |`low`| is at most half an ulp of `high`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DoubleDouble {
-    high: f64,
-    low: f64,
-    error: f64,
+    pub(super) high: f64,
+    pub(super) low: f64,
+    pub(super) error: f64,
 }
 
 /// a + b as a rounded sum and its error, exactly (Knuth).
@@ -340,26 +340,4 @@ impl Real for DoubleDouble {
     fn to_f64(self) -> f64 {
         self.high
     }
-}
-
-/// high + low, where high is the f64 nearest to it, rounded to the nearest f32, ties to even.
-fn round_sum(high: f64, low: f64) -> f32 {
-    let rounded = high as f32;
-    let between = high - f64::from(rounded);
-    // Only where high itself is halfway between two f32s, or on one, does low have a say: halfway it breaks the tie.
-    let neighbour = if between > 0.0 {
-        rounded.next_up()
-    } else {
-        rounded.next_down()
-    };
-    let halfway = between != 0.0 && between.abs() == (f64::from(neighbour) - high).abs();
-    if !halfway || low == 0.0 {
-        return rounded;
-    }
-    let (lower, upper) = if rounded < neighbour {
-        (rounded, neighbour)
-    } else {
-        (neighbour, rounded)
-    };
-    if low > 0.0 { upper } else { lower }
 }

@@ -16,7 +16,7 @@ use dashu_float::FBig;
 use dashu_float::round::Round;
 use dashu_float::round::mode::{Down, HalfEven, Up};
 
-use super::Real;
+use super::{Real, round_sum};
 
 /// The bits that an evaluation begins with: more than a double-double has, which has been tried before.
 const FEWEST_BITS: usize = 192;
@@ -301,7 +301,11 @@ fn most(ends: impl Iterator<Item = FBig<Up>>) -> FBig<Up> {
 
 /// The nearest f32, ties to even.
 fn round(x: FBig<HalfEven>) -> f32 {
-    x.to_f32().value()
+    // Not by FBig::to_f32, which does not round to the nearest among subnormal f32s. The f64s here are normal, or too small to
+    // count.
+    let high = x.to_f64().value();
+    let rest = FBig::try_from(high).map_or(Ordering::Equal, |high| x.cmp(&high));
+    round_sum(high, f64::from(rest as i8))
 }
 
 impl Add for Expression {
