@@ -83,7 +83,11 @@ fn compute<R: Real>(steps: &[Step]) -> Vec<R> {
             Step::Add(a, b) => values[a] + values[b],
             Step::Subtract(a, b) => values[a] - values[b],
             Step::Multiply(a, b) => values[a] * values[b],
-            Step::Divide(a, b) => values[a] / (values[b].squared() + R::exact(0.125)),
+            Step::Divide(a, b) => {
+                // Not 0, and not well known.
+                let cube = values[b].squared() + R::exact(0.125);
+                values[a] / (cube * cube * cube)
+            }
             Step::RootOf(x) => R::exact(x).sqrt(),
             Step::Root(a, b) => (values[a].squared() + values[b].squared()).sqrt(),
             Step::Power(a, exponent) => values[a].squared().one_minus_to_the(exponent),
