@@ -7,6 +7,7 @@ mod decision;
 mod explain;
 mod ladder;
 mod line;
+mod listing;
 mod number;
 mod pixel;
 mod shading;
@@ -25,6 +26,7 @@ use rayon::prelude::*;
 use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Pixels, Plain, Rung};
+use listing::Listing;
 
 /// How numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -36,16 +38,19 @@ pub enum Kernel {
     Fast,
     /// f64 through and through, rounded to f32 once at the end.
     Double,
+    /// The document's listings as printed, slips included: the baseline. Two spheres, one tetrahedron and a surface only.
+    Listing,
     /// What errors are measured against: as exact, but with no f64 on the way.
     Reference,
 }
 
 impl Kernel {
     /// Every kernel.
-    pub const ALL: [Kernel; 4] = [
+    pub const ALL: [Kernel; 5] = [
         Kernel::Exact,
         Kernel::Fast,
         Kernel::Double,
+        Kernel::Listing,
         Kernel::Reference,
     ];
 
@@ -55,6 +60,7 @@ impl Kernel {
             Kernel::Exact => "exact",
             Kernel::Fast => "fast",
             Kernel::Double => "double",
+            Kernel::Listing => "listing",
             Kernel::Reference => "reference",
         }
     }
@@ -75,6 +81,19 @@ pub enum TraceError {
         row: u32,
         /// N.
         size: u32,
+    },
+    /// The kernel [`Kernel::Listing`] and a scene that is not of the document's shape.
+    #[error(
+        "the kernel listing traces 2 spheres, 1 tetrahedron and 1 surface; this scene has {spheres}, {tetrahedra} and {surfaces}: \
+         choose another kernel"
+    )]
+    Listing {
+        /// How many spheres there are.
+        spheres: usize,
+        /// How many tetrahedra.
+        tetrahedra: usize,
+        /// How many surfaces: 0 or 1.
+        surfaces: usize,
     },
     /// The worker threads could not be started.
     #[error("{threads} threads cannot be started: {source}; ask for fewer")]
@@ -130,7 +149,8 @@ impl Tracer {
     /// Traces `scene` in `stage`, seen at angle `alpha` in radians, into the whole of `image`.
     ///
     /// # Errors
-    /// [`TraceError::Angle`] where `alpha` is not finite; the image is left as it was.
+    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Listing`] where the kernel is [`Kernel::Listing`] and the
+    /// scene not of the document's shape; the image is left as it was.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -182,13 +202,14 @@ impl Tracer {
             }
             Kernel::Fast => Plain::<f32>::new(scene, stage, alpha, size).explain(column, row),
             Kernel::Double => Plain::<f64>::new(scene, stage, alpha, size).explain(column, row),
+            Kernel::Listing => Listing::new(scene, stage, alpha, size)?.explain(column, row),
             Kernel::Reference => {
                 Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble).explain(column, row)
             }
         };
         let by = match (self.kernel, rung) {
             (Kernel::Fast, _) => "f32",
-            (Kernel::Double, _) => "f64",
+            (Kernel::Double | Kernel::Listing, _) => "f64",
             (_, Rung::Double) => "f64 with a bound on its error",
             (_, Rung::DoubleDouble) => "double-doubles with a bound on their error",
             (_, Rung::Arbitrary) => "arbitrary precision",
@@ -223,6 +244,9 @@ impl Tracer {
             }
             Kernel::Double => {
                 self.trace_pixels(&Plain::<f64>::new(scene, stage, alpha, n), image, decisions)
+            }
+            Kernel::Listing => {
+                self.trace_pixels(&Listing::new(scene, stage, alpha, n)?, image, decisions)
             }
             Kernel::Reference => self.trace_pixels(
                 &Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble),

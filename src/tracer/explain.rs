@@ -12,6 +12,7 @@ use super::pixel::Picture;
 use super::vector::Vector;
 use super::view::{Reach, Solids, View};
 use crate::image::display_byte;
+use crate::scene::Scene;
 use crate::stage::Stage;
 
 /// A number with nine significant digits.
@@ -350,14 +351,8 @@ impl<R: Real> Picture<'_, R> {
         }
     }
 
-    /// As a person would call it, counted from 1 as in the document.
     fn name(&self, solid: usize, face: Option<u8>) -> String {
-        let spheres = self.scene.spheres().len();
-        match face {
-            _ if solid < spheres => format!("sphere {}", solid + 1),
-            Some(face) => format!("tetrahedron {}, face {face}", solid - spheres + 1),
-            None => format!("tetrahedron {}", solid - spheres + 1),
-        }
+        name(self.scene, solid, face)
     }
 
     /// A length of view space in the scene's unit.
@@ -396,8 +391,43 @@ impl<R: Real> Picture<'_, R> {
     }
 }
 
+/// A solid as a person would call it, counted from 1 as in the document.
+fn name(scene: &Scene, solid: usize, face: Option<u8>) -> String {
+    let spheres = scene.spheres().len();
+    match face {
+        _ if solid < spheres => format!("sphere {}", solid + 1),
+        Some(face) => format!("tetrahedron {}, face {face}", solid - spheres + 1),
+        None => format!("tetrahedron {}", solid - spheres + 1),
+    }
+}
+
+/// The outcome alone, for a kernel whose steps are not those of the others.
+pub(super) fn outcome(scene: &Scene, decision: Decision, samples: [f32; 3]) -> String {
+    let named = |seen: Seen| {
+        let shadow = if seen.in_shadow { ", in shadow" } else { "" };
+        format!(
+            "{}{shadow}",
+            name(scene, usize::from(seen.solid), seen.face)
+        )
+    };
+    let mut text = String::new();
+    match decision {
+        Decision::Quadrant(number) => say(
+            &mut text,
+            "quadrant",
+            format!("{number}, in the order of Code 2-1"),
+        ),
+        Decision::Background => say(&mut text, "shows", "the background: nothing is hit"),
+        Decision::Surface => say(&mut text, "shows", "the surface"),
+        Decision::SurfaceInShadow => say(&mut text, "shows", "the surface, in shadow"),
+        Decision::Solid(seen) => say(&mut text, "shows", named(seen)),
+        Decision::Mirrored(seen) => say(&mut text, "shows", format!("{}, mirrored", named(seen))),
+    }
+    text + &samples_of(samples)
+}
+
 /// What came out: the floats with all their digits, the bytes of the display.
-pub(super) fn samples_of(samples: [f32; 3]) -> String {
+fn samples_of(samples: [f32; 3]) -> String {
     let mut text = String::new();
     let [r, g, b] = samples;
     say(&mut text, "samples", format!("{r:?} {g:?} {b:?}"));

@@ -275,7 +275,7 @@ fn seen<R>(solid: usize, hit: &Hit<R>, in_shadow: bool) -> Seen {
 }
 
 /// Code 2-1, the order of its `<=` and `>=` kept, with 250 read as N/2.
-fn quadrant<R: Real>(column: u32, row: u32, size: u32) -> (Decision, Vector<R>) {
+pub(super) fn quadrant<R: Real>(column: u32, row: u32, size: u32) -> (Decision, Vector<R>) {
     let (x, y) = (2 * column, 2 * row);
     let (number, [red, green, blue]) = if x <= size && y <= size {
         (0, [0.3, 0.3, 0.0])

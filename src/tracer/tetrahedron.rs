@@ -17,7 +17,7 @@ use crate::scene::Support;
 
 /// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from outside, for a tetrahedron
 /// whose edges 0→1, 0→2, 0→3 are right-handed.
-const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// The edge that faces i < j share, from its first to its last vertex along n_i × n_j.
 const EDGES: [(usize, usize, [usize; 2]); 6] = [
