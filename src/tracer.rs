@@ -5,6 +5,7 @@
 
 mod decision;
 mod explain;
+mod extent;
 mod ladder;
 mod line;
 mod listing;

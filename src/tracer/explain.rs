@@ -109,8 +109,10 @@ impl<R: Real> Picture<'_, R> {
             Stage::Tetrahedron => Solids::Tetrahedra,
             _ => Solids::All,
         };
-        let first = self.view.first_hit(&ray, Reach::Line, solids)?;
-        for (solid, hit) in self.view.hits(&ray, Reach::Line, solids)? {
+        let first = self
+            .view
+            .first_hit((column, row), &ray, Reach::Line, solids)?;
+        for (solid, hit) in self.view.hits((column, row), &ray, Reach::Line, solids)? {
             let rank = if first.as_ref().is_some_and(|(nearest, _)| *nearest == solid) {
                 ", first of the solids"
             } else {
@@ -158,7 +160,7 @@ impl<R: Real> Picture<'_, R> {
             (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
             (Decision::Solid(seen), _) => {
                 say(text, "shows", self.name(usize::from(seen.solid), seen.face));
-                self.explain_solid(text, &self.view, &ray, Reach::Line, seen)?;
+                self.explain_solid(text, &self.view, ((column, row), &ray), Reach::Line, seen)?;
             }
             (_, Some(floor)) => {
                 let (_, point) = self.surface_point(floor, &ray, row);
@@ -179,7 +181,11 @@ impl<R: Real> Picture<'_, R> {
                         "r",
                         format!("{}  the way the mirrored ray goes", Triple([x, -y, z])),
                     );
-                    for (solid, hit) in mirror.view.hits(&looking, Reach::Ahead, Solids::All)? {
+                    for (solid, hit) in
+                        mirror
+                            .view
+                            .hits((column, row), &looking, Reach::Ahead, Solids::All)?
+                    {
                         let t = Short(self.parameter(&looking, &hit));
                         say(
                             text,
@@ -195,7 +201,13 @@ impl<R: Real> Picture<'_, R> {
                             self.name(usize::from(seen.solid), seen.face)
                         ),
                     );
-                    self.explain_solid(text, &mirror.view, &looking, Reach::Ahead, seen)?;
+                    self.explain_solid(
+                        text,
+                        &mirror.view,
+                        ((column, row), &looking),
+                        Reach::Ahead,
+                        seen,
+                    )?;
                     say(text, "reflectance", Short(mirror.reflectance.to_f64()));
                 } else if decision == Decision::Surface && floor.mirror.is_some() {
                     say(
@@ -215,13 +227,13 @@ impl<R: Real> Picture<'_, R> {
         &self,
         text: &mut String,
         view: &View<R>,
-        ray: &Line<R>,
+        (pixel, ray): ((u32, u32), &Line<R>),
         reach: Reach,
         seen: Seen,
     ) -> Result<(), R::Doubt> {
         let solid = usize::from(seen.solid);
         let only = view
-            .hits(ray, reach, Solids::All)?
+            .hits(pixel, ray, reach, Solids::All)?
             .into_iter()
             .find(|(index, _)| *index == solid);
         let Some((_, hit)) = only else { return Ok(()) };

@@ -4,6 +4,7 @@ use std::cell::LazyCell;
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
+use super::extent::Extents;
 use super::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use super::pixel::{Picture, Pixel, mirrors};
 use super::view::{Crossings, Frame};
@@ -36,9 +37,10 @@ pub(super) struct Plain<'a, R>(Picture<'a, R>);
 impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
     pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
         let frame = frame::<R>(alpha, size);
+        let extents = Extents::new(scene, &self::frame(alpha, size), size);
         let crossing = |index, mirrored| frame.crossing(scene, index, mirrored);
         let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
-        let Ok(picture) = Picture::new(scene, stage, &frame, size, &crossings);
+        let Ok(picture) = Picture::new(scene, stage, &frame, size, &crossings, &extents);
         Plain(picture)
     }
 }
@@ -62,6 +64,7 @@ pub(super) struct Ladder<'a> {
     alpha: f64,
     size: u32,
     crossings: Crossings,
+    extents: Extents,
     /// `None` where the frame itself is in doubt already, or the kernel does without this rung.
     bounded: Option<Picture<'a, Bounded>>,
     /// Made when it is first needed.
@@ -84,8 +87,9 @@ impl<'a> Ladder<'a> {
                 })
         };
         let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
+        let extents = Extents::new(scene, &bounded, size);
         let bounded = match lowest {
-            Rung::Double => Picture::new(scene, stage, &bounded, size, &crossings).ok(),
+            Rung::Double => Picture::new(scene, stage, &bounded, size, &crossings, &extents).ok(),
             _ => None,
         };
         Ladder {
@@ -94,6 +98,7 @@ impl<'a> Ladder<'a> {
             alpha,
             size,
             crossings,
+            extents,
             bounded,
             double_double: OnceLock::new(),
         }
@@ -117,7 +122,15 @@ impl Ladder<'_> {
         }
         let double_double = self.double_double.get_or_init(|| {
             let frame = frame(self.alpha, self.size);
-            Picture::new(self.scene, self.stage, &frame, self.size, &self.crossings).ok()
+            Picture::new(
+                self.scene,
+                self.stage,
+                &frame,
+                self.size,
+                &self.crossings,
+                &self.extents,
+            )
+            .ok()
         });
         if let Some(Ok(answer)) = double_double
             .as_ref()
@@ -127,8 +140,14 @@ impl Ladder<'_> {
         }
         Expression::session(|| {
             let frame = frame::<Expression>(self.alpha, self.size);
-            let Ok(picture) =
-                Picture::new(self.scene, self.stage, &frame, self.size, &self.crossings);
+            let Ok(picture) = Picture::new(
+                self.scene,
+                self.stage,
+                &frame,
+                self.size,
+                &self.crossings,
+                &self.extents,
+            );
             let Ok(answer) = question.put_to(&picture);
             (answer, Rung::Arbitrary)
         })

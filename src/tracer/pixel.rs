@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::iter;
 
 use super::decision::{Decision, Seen};
+use super::extent::{Extent, Extents};
 use super::line::{Hit, Line};
 use super::number::{Real, all, any};
 use super::surface::Surface;
@@ -25,6 +26,8 @@ pub(super) struct Picture<'a, R> {
 /// The surface, from stage 5 on.
 pub(super) struct Floor<R> {
     pub(super) surface: Surface<R>,
+    /// Where it can be seen.
+    extent: Extent,
     color: Vector<R>,
     /// (N/2) · height.
     height_in_pixels: R,
@@ -46,29 +49,33 @@ pub(super) fn mirrors(scene: &Scene, stage: Stage) -> bool {
 pub(super) type Pixel = (Decision, [f32; 3]);
 
 impl<'a, R: Real> Picture<'a, R> {
-    /// `crossings` are those of the same frame.
+    /// `crossings` and `extents` are those of the same frame.
     pub(super) fn new(
         scene: &'a Scene,
         stage: Stage,
         frame: &Frame<R>,
         size: u32,
         crossings: &Crossings,
+        extents: &Extents,
     ) -> Result<Self, R::Doubt> {
-        let view = |mirrored| View::new(scene, frame, crossings, mirrored);
-        let floor = match (scene.surface(), frame.surface(scene)) {
-            (Some(described), Some(surface)) if stage >= Stage::Shadow => Some(Floor {
-                surface,
-                color: Vector::exact(described.color),
-                height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
-                mirror: if mirrors(scene, stage) {
-                    Some(Mirror {
-                        view: view(true)?,
-                        reflectance: R::exact(described.reflectance),
-                    })
-                } else {
-                    None
-                },
-            }),
+        let view = |mirrored| View::new(scene, frame, crossings, extents, mirrored);
+        let floor = match (scene.surface(), frame.surface(scene), &extents.surface) {
+            (Some(described), Some(surface), Some(extent)) if stage >= Stage::Shadow => {
+                Some(Floor {
+                    surface,
+                    extent: extent.clone(),
+                    color: Vector::exact(described.color),
+                    height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
+                    mirror: if mirrors(scene, stage) {
+                        Some(Mirror {
+                            view: view(true)?,
+                            reflectance: R::exact(described.reflectance),
+                        })
+                    } else {
+                        None
+                    },
+                })
+            }
             _ => None,
         };
         Ok(Picture {
@@ -120,10 +127,12 @@ impl<'a, R: Real> Picture<'a, R> {
         solids: Solids,
     ) -> Result<(Decision, Vector<R>), R::Doubt> {
         Ok(
-            match self
-                .view
-                .first_hit(&self.eye_ray(column, row), Reach::Line, solids)?
-            {
+            match self.view.first_hit(
+                (column, row),
+                &self.eye_ray(column, row),
+                Reach::Line,
+                solids,
+            )? {
                 Some((solid, hit)) => {
                     (Decision::Solid(seen(solid, &hit, false)), self.color(solid))
                 }
@@ -135,10 +144,12 @@ impl<'a, R: Real> Picture<'a, R> {
     /// Stage 4: the first hit, shaded.
     fn lit(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
         Ok(
-            match self
-                .view
-                .first_hit(&self.eye_ray(column, row), Reach::Line, Solids::All)?
-            {
+            match self.view.first_hit(
+                (column, row),
+                &self.eye_ray(column, row),
+                Reach::Line,
+                Solids::All,
+            )? {
                 Some((solid, hit)) => {
                     let light = self.view.shading.lit(hit.normal, hit.normal_length)?;
                     (
@@ -154,8 +165,14 @@ impl<'a, R: Real> Picture<'a, R> {
     /// Stages 5 to 7: the first hit among the solids and the surface.
     fn traced(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
         let ray = self.eye_ray(column, row);
-        let hit = self.view.first_hit(&ray, Reach::Line, Solids::All)?;
-        if let Some(floor) = &self.floor {
+        let hit = self
+            .view
+            .first_hit((column, row), &ray, Reach::Line, Solids::All)?;
+        if let Some(floor) = self
+            .floor
+            .as_ref()
+            .filter(|floor| floor.extent.holds(column, row))
+        {
             let (depth, point) = self.surface_point(floor, &ray, row);
             let hides = || match &hit {
                 // Of a solid and the surface at the same depth, the solid is seen.
@@ -165,7 +182,7 @@ impl<'a, R: Real> Picture<'a, R> {
             };
             let contains = || floor.surface.contains(point);
             if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
-                return self.surface_at(floor, point);
+                return self.surface_at(floor, (column, row), point);
             }
         }
         Ok(match hit {
@@ -198,6 +215,7 @@ impl<'a, R: Real> Picture<'a, R> {
     fn surface_at(
         &self,
         floor: &Floor<R>,
+        pixel: (u32, u32),
         point: Vector<R>,
     ) -> Result<(Decision, Vector<R>), R::Doubt> {
         let leaves = floor.surface.support;
@@ -214,7 +232,11 @@ impl<'a, R: Real> Picture<'a, R> {
                 direction: looking(),
                 leaves: Some(leaves),
             };
-            if let Some((solid, hit)) = mirror.view.first_hit(&ray, Reach::Ahead, Solids::All)? {
+            if let Some((solid, hit)) =
+                mirror
+                    .view
+                    .first_hit(pixel, &ray, Reach::Ahead, Solids::All)?
+            {
                 let (in_shadow, color) = self.solid(&mirror.view, solid, &hit)?;
                 return Ok((
                     Decision::Mirrored(seen(solid, &hit, in_shadow)),

@@ -18,6 +18,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::extent::{Extent, Extents};
 use super::line::{Direction, Hit, Line};
 use super::number::{Real, any};
 use super::shading::Shading;
@@ -47,7 +48,7 @@ impl<R: Real> Frame<R> {
     }
 
     /// The height of the plane that reflects, in view space.
-    fn mirror(&self, scene: &Scene) -> Option<R> {
+    pub(super) fn mirror(&self, scene: &Scene) -> Option<R> {
         scene
             .surface()
             .map(|surface| R::exact(surface.height) * self.scale)
@@ -62,7 +63,7 @@ impl<R: Real> Frame<R> {
         )
     }
 
-    fn place(&self, point: DVec3) -> Vector<R> {
+    pub(super) fn place(&self, point: DVec3) -> Vector<R> {
         self.turn(point) * self.scale
     }
 
@@ -135,7 +136,7 @@ impl Crossings {
 }
 
 /// The reflection in the horizontal plane of height `mirror`, if there is one.
-fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
+pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
     match mirror {
         Some(height) => Vector::new(point.x, height + height - point.y, point.z),
         None => point,
@@ -153,6 +154,8 @@ pub(super) fn looking<R: Real>() -> Direction<R> {
 
 /// All solids and the light, turned, scaled, and for the mirror reflected.
 pub(super) struct View<R> {
+    /// Where each solid can be seen: spheres, then tetrahedra.
+    extents: Vec<Extent>,
     spheres: Vec<Sphere<R>>,
     tetrahedra: Vec<TetrahedronInView<R>>,
     pub(super) shading: Shading<R>,
@@ -185,8 +188,15 @@ impl<R: Real> View<R> {
         scene: &Scene,
         frame: &Frame<R>,
         crossings: &Crossings,
+        extents: &Extents,
         mirrored: bool,
     ) -> Result<View<R>, R::Doubt> {
+        let extents = if mirrored {
+            &extents.mirrored
+        } else {
+            &extents.direct
+        }
+        .clone();
         let mirror = frame.mirror(scene).filter(|_| mirrored);
         let crossings = if mirrored {
             &crossings.mirrored
@@ -225,21 +235,23 @@ impl<R: Real> View<R> {
             }
         });
         Ok(View {
+            extents,
             spheres: spheres.collect(),
             tetrahedra: tetrahedra.collect(),
             shading: Shading::new(scene, &looking(), to_light)?,
         })
     }
 
-    /// The first solid along an eye ray, and where it is hit; of solids hit at once, the earliest in the scene's order.
+    /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where it is hit; of solids hit at once, the earliest in the scene's order.
     pub(super) fn first_hit(
         &self,
+        pixel: (u32, u32),
         ray: &Line<R>,
         reach: Reach,
         solids: Solids,
     ) -> Result<Option<(usize, Hit<R>)>, R::Doubt> {
         let mut first: Option<(usize, Hit<R>)> = None;
-        self.each_hit(ray, reach, solids, |solid, hit| {
+        self.each_hit(pixel, ray, reach, solids, |solid, hit| {
             let nearer = match &first {
                 Some((_, other)) if other.support == hit.support => false,
                 Some((_, other)) => (hit.depth - other.depth).sign()?.is_lt(),
@@ -255,14 +267,16 @@ impl<R: Real> View<R> {
 
     fn each_hit(
         &self,
+        pixel: (u32, u32),
         ray: &Line<R>,
         reach: Reach,
         solids: Solids,
         mut meet: impl FnMut(usize, Hit<R>) -> Result<(), R::Doubt>,
     ) -> Result<(), R::Doubt> {
+        let seen = |solid: usize| self.extents[solid].holds(pixel.0, pixel.1);
         if solids != Solids::Tetrahedra {
             for (solid, sphere) in self.spheres.iter().enumerate() {
-                if reach == Reach::Line || sphere.is_ahead(ray)? {
+                if seen(solid) && (reach == Reach::Line || sphere.is_ahead(ray)?) {
                     sphere
                         .first_hit(ray)?
                         .map_or(Ok(()), |hit| meet(solid, hit))?;
@@ -271,7 +285,7 @@ impl<R: Real> View<R> {
         }
         if solids != Solids::Spheres {
             for (solid, t) in (self.spheres.len()..).zip(&self.tetrahedra) {
-                if reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)? {
+                if seen(solid) && (reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)?) {
                     t.solid
                         .first_hit(&t.from_eye, ray)?
                         .map_or(Ok(()), |hit| meet(solid, hit))?;
@@ -284,12 +298,13 @@ impl<R: Real> View<R> {
     /// Every solid that takes part and that the ray meets, in the scene's order.
     pub(super) fn hits(
         &self,
+        pixel: (u32, u32),
         ray: &Line<R>,
         reach: Reach,
         solids: Solids,
     ) -> Result<Vec<(usize, Hit<R>)>, R::Doubt> {
         let mut all = Vec::new();
-        self.each_hit(ray, reach, solids, |solid, hit| {
+        self.each_hit(pixel, ray, reach, solids, |solid, hit| {
             all.push((solid, hit));
             Ok(())
         })?;

@@ -40,6 +40,18 @@ pub(crate) struct Bounded {
 }
 
 impl Bounded {
+    /// A number that the truth is not below.
+    pub(crate) fn at_least(self) -> f64 {
+        // A little more than the error takes care of the rounding here; NaN and infinities say nothing.
+        let low = self.value - (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
+        if low.is_nan() { f64::NEG_INFINITY } else { low }
+    }
+
+    /// A number that the truth is not above.
+    pub(crate) fn at_most(self) -> f64 {
+        -(-self).at_least()
+    }
+
     fn is_zero(self) -> bool {
         self.value == 0.0 && self.error == 0.0
     }
@@ -171,9 +183,7 @@ impl Real for Bounded {
         if self.error == 0.0 {
             return Ok(self.value as f32 + 0.0);
         }
-        // The ends of the enclosure, moved out by more than the rounding that computes them.
-        let error = (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
-        round_enclosure((self.value - error) as f32, (self.value + error) as f32).ok_or(Doubt)
+        round_enclosure(self.at_least() as f32, self.at_most() as f32).ok_or(Doubt)
     }
 
     fn to_f64(self) -> f64 {
