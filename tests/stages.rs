@@ -25,7 +25,7 @@ fn compare(scene: &Scene, stage: Stage, alpha: f64, size: u32) {
             .unwrap();
         (kernel, image, decisions)
     });
-    let plain = Plain::new(scene, stage, alpha, size);
+    let plain = Plain::new(scene, stage, alpha, size, 256);
     let wrong: Vec<String> = (0..size * size)
         .into_par_iter()
         .filter_map(|index| {

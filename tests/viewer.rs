@@ -32,9 +32,7 @@ use pixels::traced;
 use program::{Program, wait_for};
 use session::{ESCAPE, HOME, LEFT, RIGHT, SPACE, Session};
 use x11rb::connection::Connection as _;
-use x11rb::protocol::xproto::{
-    ConnectionExt as _, CreateWindowAux, InputFocus, Window, WindowClass,
-};
+use x11rb::protocol::xproto::{ConnectionExt as _, CreateWindowAux, Window, WindowClass};
 use xvfb::Xvfb;
 
 /// How long anything may take that is waited for.
@@ -134,11 +132,7 @@ fn a_static_stage_is_traced_and_uploaded_once_and_then_sleeps() {
         // Pressed again it is the same picture.
         session.type_keys(&stage.number().to_string());
     }
-    wait_for("the program to sleep on", || {
-        let before = session.program.sleeps();
-        thread::sleep(WATCH);
-        (session.program.sleeps() == before).then_some(())
-    });
+    sleeps(&session);
     session.press(ESCAPE);
     let [traces, uploads, draws] = session.program.left();
     assert_eq!([traces, uploads], [3, 3]);
@@ -153,11 +147,7 @@ fn the_paused_animation_sleeps() {
     };
     session.press(SPACE);
     session.titled(&["paused"]);
-    wait_for("the program to sleep on", || {
-        let before = session.program.sleeps();
-        thread::sleep(WATCH);
-        (session.program.sleeps() == before).then_some(())
-    });
+    sleeps(&session);
     let title = session.title();
     session.press(SPACE);
     wait_for("α to move on", || (session.title() != title).then_some(()));
@@ -227,6 +217,15 @@ fn a_covered_window_rests_and_comes_back() {
     session.connection.destroy_window(cover).unwrap();
     session.connection.flush().unwrap();
     wait_for("α to move on", || (session.title() != title).then_some(()));
+}
+
+/// Waits until the program does nothing at all.
+fn sleeps(session: &Session) {
+    wait_for("the program to sleep on", || {
+        let before = session.program.activity();
+        thread::sleep(WATCH);
+        (session.program.activity() == before).then_some(())
+    });
 }
 
 /// Waits until the animation stands still although it is not paused.
@@ -435,10 +434,7 @@ fn a_picture_that_cannot_be_saved_is_a_line_and_no_more() {
     session.type_keys("q");
     let (status, errors) = session.program.ended();
     assert_eq!(status.code(), Some(0));
-    assert!(
-        errors.starts_with("firsthit: not saved: firsthit-stage6-0001.png: "),
-        "{errors}"
-    );
+    assert!(errors.contains("firsthit-stage6-0001.png: "), "{errors}");
     assert_eq!(errors.lines().count(), 1);
 }
 
@@ -456,23 +452,6 @@ fn q_esc_and_the_window_manager_leave() {
         leave(&session);
         session.program.left();
     }
-}
-
-#[test]
-fn keys_of_another_window_are_not_ours() {
-    let Some(session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
-        return;
-    };
-    let cover = cover(&session);
-    let connection = &session.connection;
-    connection
-        .set_input_focus(InputFocus::POINTER_ROOT, cover, x11rb::CURRENT_TIME)
-        .unwrap()
-        .check()
-        .unwrap();
-    session.type_keys("1q");
-    connection.destroy_window(cover).unwrap().check().unwrap();
-    session.shows(40, Stage::Reflection, 0.0);
 }
 
 /// The program, on a display that cannot be had, says so in one line and ends with status 1.
@@ -508,38 +487,45 @@ fn a_server_without_what_a_window_needs_is_one_line() {
 
 #[test]
 fn x11_serves_where_wayland_is_named_but_not_there() {
-    let nowhere = ("WAYLAND_DISPLAY", "/nowhere/wayland-0");
-    let arguments = ["view", "--stage", "6", "--size", "40"];
-    let Some(session) = Session::start_with(&arguments, &[nowhere]) else {
+    let Some(xvfb) = Xvfb::start(&[]) else {
         return;
     };
+    let nowhere = ("WAYLAND_DISPLAY", "/nowhere/wayland-0");
+    let session = Session::on(xvfb, &["view", "--stage", "6", "--size", "40"], &[nowhere]);
     session.shows(40, Stage::Reflection, 0.0);
 }
 
+/// An X server on which OpenGL goes another way: EGL instead of GLX.
+const WITHOUT_GLX: [&str; 2] = ["-extension", "GLX"];
+
 #[test]
 fn egl_serves_where_the_server_has_no_glx() {
-    let Some(xvfb) = Xvfb::start(&["-extension", "GLX"]) else {
+    let Some(xvfb) = Xvfb::start(&WITHOUT_GLX) else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let arguments = ["view", "--size", "40", "--exit-after-frames", "3"];
-    let environment = [("DISPLAY", xvfb.display.as_str())];
-    let mut program = Program::start(folder.path(), &arguments, &environment);
-    let [_, _, draws] = program.left();
-    assert_eq!(draws, 3);
+    let session = Session::on(xvfb, &["view", "--stage", "6", "--size", "120"], &[]);
+    session.shows(120, Stage::Reflection, 0.0);
+    session.resize(500, 300);
+    session.shows(120, Stage::Reflection, 0.0);
+    session.type_keys("5");
+    session.shows(120, Stage::Shadow, 0.0);
 }
 
 #[test]
 fn the_death_of_the_server_is_one_line() {
-    for stage in ["6", "7"] {
-        let Some(mut session) = Session::start(&["view", "--stage", stage, "--size", "40"]) else {
-            return;
-        };
-        session.titled(&["firsthit"]);
-        session.crash_server();
-        let (status, errors) = session.program.ended();
-        assert_eq!(status.code(), Some(1), "{errors}");
-        assert_eq!(errors.lines().count(), 1, "{errors}");
-        assert!(errors.contains("the display went away"), "{errors}");
+    for server in [&[][..], &WITHOUT_GLX] {
+        for stage in ["6", "7"] {
+            let Some(xvfb) = Xvfb::start(server) else {
+                return;
+            };
+            // Large enough that Mesa sends it to the server in parts.
+            let arguments = ["view", "--stage", stage, "--size", "300"];
+            let mut session = Session::on(xvfb, &arguments, &[]);
+            session.crash_server();
+            let (status, errors) = session.program.ended();
+            assert_eq!(status.code(), Some(1), "{errors}");
+            assert_eq!(errors.lines().count(), 1, "{errors}");
+            assert!(errors.contains("the display went away"), "{errors}");
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! Equation 4-1: ambient, diffuse and specular light at a point of a solid.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use super::line::Direction;
-use super::number::Real;
+use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Scene;
 
@@ -31,10 +33,9 @@ impl<R: Real> Shading<R> {
         let to_light_length = to_light.squared_length.sqrt();
         // l is opposite to v where it goes exactly the way that the eye looks.
         let crossed = looking.vector.cross(to_light.vector);
-        let opposite = crossed.x.sign()?.is_eq()
-            && crossed.y.sign()?.is_eq()
-            && crossed.z.sign()?.is_eq()
-            && looking.vector.dot(to_light.vector).sign()?.is_gt();
+        let along = looking.vector.dot(to_light.vector).sign();
+        let across = [crossed.x, crossed.y, crossed.z].map(|x| x.sign().map(Ordering::is_eq));
+        let opposite = all(across.into_iter().chain([along.map(Ordering::is_gt)]))?;
         let halfway = if opposite {
             None
         } else {

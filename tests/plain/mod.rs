@@ -1,32 +1,20 @@
-//! The picture evaluated plainly in 256 bits, straight from its definition: world space, Equation 3-1 with its textbook
-//! discriminant, planes cut one by one, a mirrored ray that is really mirrored. It shares no formula with the tracer.
+//! The picture evaluated plainly in as many bits as asked for, straight from its definition: world space, Equation 3-1 with its
+//! textbook discriminant, planes cut one by one, a mirrored ray that is really mirrored. It shares no formula with the tracer.
 //!
-//! Lengths are measured in 1/(3N) and the eye looks along −(10 sin α, 3, 10 cos α), so that at α = 0 and for a scene of short
-//! binary fractions everything but square roots and the final colour is exact, and a touching line is seen to touch.
+//! Lengths are measured in 1/(3N) and the eye looks along −(10 sin α, 3, 10 cos α), so that at α = 0 everything but square roots
+//! and the final colour is rational, and a touching line is seen to touch. At other angles what is zero for every α is seen
+//! to be small beyond accident (see [`Number`]).
+
+mod number;
 
 use std::cmp::Ordering;
 
-use dashu_float::FBig;
-use dashu_float::round::mode::HalfEven;
 use firsthit::tracer::{Decision, Seen};
 use firsthit::{Scene, Stage};
 use glam::DVec3;
+use number::Number;
 
-type Number = FBig<HalfEven, 2>;
 type Vector = [Number; 3];
-
-const BITS: usize = 256;
-
-fn number(value: f64) -> Number {
-    Number::try_from(value)
-        .unwrap()
-        .with_precision(BITS)
-        .value()
-}
-
-fn vector(v: DVec3) -> Vector {
-    [number(v.x), number(v.y), number(v.z)]
-}
 
 fn zip(a: &Vector, b: &Vector, f: impl Fn(&Number, &Number) -> Number) -> Vector {
     [f(&a[0], &b[0]), f(&a[1], &b[1]), f(&a[2], &b[2])]
@@ -44,29 +32,22 @@ fn scale(a: &Vector, factor: &Number) -> Vector {
     a.each_ref().map(|a| a * factor)
 }
 
+fn negative(a: &Vector) -> Vector {
+    a.each_ref().map(|a| -a)
+}
+
 fn dot(a: &Vector, b: &Vector) -> Number {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
 }
 
 fn cross(a: &Vector, b: &Vector) -> Vector {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
-}
-
-fn root(x: &Number) -> Number {
-    if sign(x).is_eq() { x.clone() } else { x.sqrt() }
+    let minor = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 fn unit(a: &Vector) -> Vector {
-    let length = root(&dot(a, a));
+    let length = dot(a, a).root();
     a.each_ref().map(|a| a / &length)
-}
-
-fn sign(x: &Number) -> Ordering {
-    x.cmp(&number(0.0))
 }
 
 enum Shape {
@@ -98,14 +79,14 @@ impl Solid {
                 let from_center = sub(origin, center);
                 let a = dot(direction, direction);
                 let b = dot(direction, &from_center);
-                let c = dot(&from_center, &from_center) - radius * radius;
-                let discriminant = &b * &b - &a * &c;
-                if sign(&discriminant).is_lt() {
+                let c = &dot(&from_center, &from_center) - &(radius * radius);
+                let discriminant = &(&b * &b) - &(&a * &c);
+                if discriminant.sign().is_lt() {
                     return None;
                 }
-                let root = root(&discriminant);
-                let near = (-&b - &root) / &a;
-                let far = (-&b + &root) / &a;
+                let root = discriminant.root();
+                let near = &(-&(&b + &root)) / &a;
+                let far = &(&root - &b) / &a;
                 let normal = add(&from_center, &scale(direction, &near));
                 Some(Inside {
                     near,
@@ -116,26 +97,27 @@ impl Solid {
             }
             Shape::Tetrahedron(faces) => {
                 // t = num/den with den > 0; fractions are compared by multiplying out, which is exact where they are.
-                let less = |(a, b): &(Number, Number), (c, d): &(Number, Number)| a * d < c * b;
+                let less =
+                    |(a, b): &(Number, Number), (c, d): &(Number, Number)| (a * d).less(&(c * b));
                 let mut near: Option<(usize, (Number, Number))> = None;
                 let mut far: Option<(Number, Number)> = None;
                 for (k, (point, normal)) in faces.iter().enumerate() {
                     let f = dot(&sub(origin, point), normal);
                     let g = dot(direction, normal);
-                    match sign(&g) {
+                    match g.sign() {
                         Ordering::Less => {
-                            let t = (f, -g);
+                            let t = (f, -&g);
                             if near.as_ref().is_none_or(|(_, other)| less(other, &t)) {
                                 near = Some((k, t));
                             }
                         }
                         Ordering::Greater => {
-                            let t = (-f, g);
+                            let t = (-&f, g);
                             if far.as_ref().is_none_or(|other| less(&t, other)) {
                                 far = Some(t);
                             }
                         }
-                        Ordering::Equal if sign(&f).is_gt() => return None,
+                        Ordering::Equal if f.sign().is_gt() => return None,
                         Ordering::Equal => {}
                     }
                 }
@@ -144,8 +126,8 @@ impl Solid {
                     return None;
                 }
                 Some(Inside {
-                    near: near.0 / near.1,
-                    far: far.0 / far.1,
+                    near: &near.0 / &near.1,
+                    far: &far.0 / &far.1,
                     face: Some(face as u8),
                     normal: faces[face].1.clone(),
                 })
@@ -159,6 +141,7 @@ pub(crate) struct Plain<'a> {
     scene: &'a Scene,
     stage: Stage,
     size: u32,
+    bits: usize,
     sin: Number,
     cos: Number,
     solids: Vec<Solid>,
@@ -167,14 +150,23 @@ pub(crate) struct Plain<'a> {
 }
 
 impl<'a> Plain<'a> {
-    pub(crate) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Plain<'a> {
+    /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are apart where something is.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        stage: Stage,
+        alpha: f64,
+        size: u32,
+        bits: usize,
+    ) -> Plain<'a> {
+        let number = |value: f64| Number::exact(value, bits);
+        let vector = |v: DVec3| v.to_array().map(number);
         let (sin, cos) = number(alpha).sin_cos();
         let unit_length = number(3.0 * f64::from(size));
         let place = |p: DVec3| scale(&vector(p), &unit_length);
         let spheres = scene.spheres().iter().map(|sphere| Solid {
             shape: Shape::Sphere {
                 center: place(sphere.center),
-                radius: number(sphere.radius) * &unit_length,
+                radius: &number(sphere.radius) * &unit_length,
             },
             color: vector(sphere.color),
         });
@@ -183,10 +175,10 @@ impl<'a> Plain<'a> {
             let faces = [0, 1, 2, 3].map(|k: usize| {
                 let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4];
                 let normal = cross(&sub(&v[b], &v[a]), &sub(&v[c], &v[a]));
-                let inward = sign(&dot(&normal, &sub(&v[k], &v[a]))).is_gt();
+                let inward = dot(&normal, &sub(&v[k], &v[a])).sign().is_gt();
                 (
                     v[a].clone(),
-                    if inward { normal.map(|x| -x) } else { normal },
+                    if inward { negative(&normal) } else { normal },
                 )
             });
             Solid {
@@ -200,6 +192,7 @@ impl<'a> Plain<'a> {
             scene,
             stage,
             size,
+            bits,
             sin,
             cos,
             solids,
@@ -207,9 +200,17 @@ impl<'a> Plain<'a> {
         }
     }
 
+    fn number(&self, value: f64) -> Number {
+        Number::exact(value, self.bits)
+    }
+
+    fn vector(&self, v: DVec3) -> Vector {
+        v.to_array().map(|x| self.number(x))
+    }
+
     pub(crate) fn pixel(&self, column: u32, row: u32) -> (Decision, [f32; 3]) {
         let (decision, color) = self.evaluate(column, row);
-        (decision, color.map(|x| x.to_f32().value() + 0.0))
+        (decision, color.each_ref().map(Number::to_sample))
     }
 
     fn evaluate(&self, column: u32, row: u32) -> (Decision, Vector) {
@@ -222,20 +223,20 @@ impl<'a> Plain<'a> {
                 () if x >= middle && y <= middle => (2, [0.3, 0.0, 0.3]),
                 () => (3, [0.0; 3]),
             };
-            return (Decision::Quadrant(quadrant), color.map(number));
+            return (Decision::Quadrant(quadrant), color.map(|x| self.number(x)));
         }
-        let u = number(3.0 * (2.0 * f64::from(column) - n));
-        let v = number(3.0 * (2.0 * f64::from(row) - n));
-        let near = number(3.0 * n);
+        let u = self.number(3.0 * (2.0 * f64::from(column) - n));
+        let v = self.number(3.0 * (2.0 * f64::from(row) - n));
+        let near = self.number(3.0 * n);
         let eye = [
-            &near * &self.sin + &u * &self.cos,
+            &(&near * &self.sin) + &(&u * &self.cos),
             v.clone(),
-            &near * &self.cos - &u * &self.sin,
+            &(&near * &self.cos) - &(&u * &self.sin),
         ];
         let looking = [
-            number(-10.0) * &self.sin,
-            number(-3.0),
-            number(-10.0) * &self.cos,
+            &self.number(-10.0) * &self.sin,
+            self.number(-3.0),
+            &self.number(-10.0) * &self.cos,
         ];
 
         let takes_part = |solid: &Solid| match self.stage {
@@ -253,7 +254,7 @@ impl<'a> Plain<'a> {
             if let Some(inside) = solid.meet(&eye, &looking)
                 && first
                     .as_ref()
-                    .is_none_or(|(_, other)| inside.near < other.near)
+                    .is_none_or(|(_, other)| inside.near.less(&other.near))
             {
                 first = Some((index, inside));
             }
@@ -263,15 +264,18 @@ impl<'a> Plain<'a> {
             && let Some(surface) = self.scene.surface()
         {
             // 3 t = v − height, both a multiple of 3.
-            let t = number(2.0 * f64::from(row) - n) - number(n) * number(surface.height);
+            let middle = self.number(2.0 * f64::from(row) - n);
+            let t = &middle - &(&self.number(n) * &self.number(surface.height));
             let point = add(&eye, &scale(&looking, &t));
-            let visible = first.as_ref().is_none_or(|(_, inside)| t < inside.near);
-            if visible && self.on_square(&point, &number(1.0)) {
+            let visible = first
+                .as_ref()
+                .is_none_or(|(_, inside)| t.less(&inside.near));
+            if visible && self.on_square(&point, &self.number(1.0)) {
                 return self.surface_at(&point, &looking);
             }
         }
         match first {
-            None => (Decision::Background, vector(self.scene.background())),
+            None => (Decision::Background, self.vector(self.scene.background())),
             Some((index, inside)) => {
                 let point = add(&eye, &scale(&looking, &inside.near));
                 let (in_shadow, color) = self.shade(index, &inside, &point, &looking);
@@ -296,9 +300,9 @@ impl<'a> Plain<'a> {
         }
         if self.stage >= Stage::Reflection {
             let mirrored = [looking[0].clone(), -&looking[1], looking[2].clone()];
-            let zero = number(0.0);
+            let zero = self.number(0.0);
             let start = |inside: &Inside| {
-                if inside.near < zero {
+                if inside.near.less(&zero) {
                     zero.clone()
                 } else {
                     inside.near.clone()
@@ -307,10 +311,10 @@ impl<'a> Plain<'a> {
             let mut first: Option<(usize, Inside)> = None;
             for (index, solid) in self.solids.iter().enumerate() {
                 if let Some(inside) = solid.meet(point, &mirrored)
-                    && inside.far > zero
+                    && inside.far.sign().is_gt()
                     && first
                         .as_ref()
-                        .is_none_or(|(_, other)| start(&inside) < start(other))
+                        .is_none_or(|(_, other)| start(&inside).less(&start(other)))
                 {
                     first = Some((index, inside));
                 }
@@ -325,21 +329,27 @@ impl<'a> Plain<'a> {
                 };
                 return (
                     Decision::Mirrored(seen),
-                    scale(&color, &number(surface.reflectance)),
+                    scale(&color, &self.number(surface.reflectance)),
                 );
             }
         }
-        (Decision::Surface, vector(surface.color))
+        (Decision::Surface, self.vector(surface.color))
+    }
+
+    /// Half the length of the square's sides.
+    fn half_width(&self) -> Option<Number> {
+        let surface = self.scene.surface()?;
+        let unit_length = self.number(3.0 * f64::from(self.size));
+        Some(&self.number(surface.half_width) * &unit_length)
     }
 
     /// Whether a point in the square's plane is in the square, both scaled by `factor`.
     fn on_square(&self, point: &Vector, factor: &Number) -> bool {
-        self.scene.surface().is_some_and(|surface| {
-            let half_width =
-                number(surface.half_width) * number(3.0 * f64::from(self.size)) * factor;
+        self.half_width().is_some_and(|half_width| {
+            let half_width = &half_width * factor;
             [&point[0], &point[2]]
                 .into_iter()
-                .all(|x| *x <= half_width && -x <= half_width)
+                .all(|x| !half_width.less(x) && !half_width.less(&-x))
         })
     }
 
@@ -348,7 +358,7 @@ impl<'a> Plain<'a> {
             Some(index) != besides
                 && solid
                     .meet(point, &self.light)
-                    .is_some_and(|inside| sign(&inside.far).is_gt())
+                    .is_some_and(|inside| inside.far.sign().is_gt())
         })
     }
 
@@ -356,28 +366,55 @@ impl<'a> Plain<'a> {
         let Some(surface) = self.scene.surface() else {
             return false;
         };
-        let rise = number(surface.height) * number(3.0 * f64::from(self.size)) - &point[1];
+        let unit_length = self.number(3.0 * f64::from(self.size));
+        let rise = &(&self.number(surface.height) * &unit_length) - &point[1];
         let climb = &self.light[1];
-        // A light in the surface's plane is not among the scenes that this evaluation is used for.
-        assert!(!sign(climb).is_eq());
-        let positive = if sign(climb).is_lt() {
-            -climb
-        } else {
-            climb.clone()
+        let (positive, scaled_t) = match climb.sign() {
+            Ordering::Less => (-climb, -&rise),
+            Ordering::Equal => return rise.sign().is_eq() && self.crosses_square(point),
+            Ordering::Greater => (climb.clone(), rise),
         };
-        let scaled_t = if sign(climb).is_lt() { -rise } else { rise };
-        sign(&scaled_t).is_gt()
+        scaled_t.sign().is_gt()
             && self.on_square(
                 &add(&scale(point, &positive), &scale(&self.light, &scaled_t)),
                 &positive,
             )
     }
 
+    /// Whether the ray to a light in the square's plane meets the square at some t > 0, from a point in that plane.
+    fn crosses_square(&self, point: &Vector) -> bool {
+        let Some(half_width) = self.half_width() else {
+            return false;
+        };
+        // −H ≤ p + t l ≤ H for x and for z, each bound on t as numerator and positive denominator.
+        let (mut lower, mut upper) = (vec![(self.number(0.0), self.number(1.0))], vec![]);
+        for axis in [0, 2] {
+            let (p, l) = (&point[axis], &self.light[axis]);
+            let (to_low, to_high) = (&-&half_width - p, &half_width - p);
+            match l.sign() {
+                Ordering::Greater => {
+                    lower.push((to_low, l.clone()));
+                    upper.push((to_high, l.clone()));
+                }
+                Ordering::Less => {
+                    lower.push((-&to_high, -l));
+                    upper.push((-&to_low, -l));
+                }
+                Ordering::Equal if to_low.sign().is_gt() || to_high.sign().is_lt() => return false,
+                Ordering::Equal => {}
+            }
+        }
+        // 0 itself does not belong to the ray.
+        upper
+            .iter()
+            .all(|(a, b)| a.sign().is_gt() && lower.iter().all(|(c, d)| !(a * d).less(&(c * b))))
+    }
+
     fn ambient(&self) -> Vector {
         let (light, material) = (self.scene.light(), self.scene.material());
         zip(
-            &vector(material.ambient),
-            &vector(light.ambient_intensity),
+            &self.vector(material.ambient),
+            &self.vector(light.ambient_intensity),
             |k, i| k * i,
         )
     }
@@ -396,26 +433,25 @@ impl<'a> Plain<'a> {
         }
         let normal = unit(&inside.normal);
         let l = unit(&self.light);
-        let n_l = dot(&normal, &l);
+        let facing = dot(&inside.normal, &self.light).sign();
         let in_shadow = self.stage >= Stage::Shadow
-            && (sign(&dot(&inside.normal, &self.light)).is_le()
+            && (facing.is_le()
                 || self.shadowed(point, Some(index))
                 || self.shaded_by_surface(point));
         let mut light = self.ambient();
         if !in_shadow {
-            let (i, material) = (vector(self.scene.light().intensity), self.scene.material());
-            let zero = number(0.0);
-            let diffuse = zip(&vector(material.diffuse), &i, |k, i| k * i);
-            light = add(
-                &light,
-                &scale(&diffuse, if n_l > zero { &n_l } else { &zero }),
-            );
-            let v = unit(&scale(looking, &number(-1.0)));
-            let h = unit(&add(&v, &l));
-            let n_h = dot(&normal, &h);
-            if n_h > zero {
-                let specular = zip(&vector(material.specular), &i, |k, i| k * i);
-                let highlight = n_h.powi(material.exponent.into());
+            let material = self.scene.material();
+            let intensity = self.vector(self.scene.light().intensity);
+            let times_intensity = |k: DVec3| zip(&self.vector(k), &intensity, |k, i| k * i);
+            if facing.is_gt() {
+                let diffuse = times_intensity(material.diffuse);
+                light = add(&light, &scale(&diffuse, &dot(&normal, &l)));
+            }
+            let sum = add(&unit(&negative(looking)), &l);
+            if sum.iter().any(|x| x.sign().is_ne()) {
+                let n_h = dot(&normal, &unit(&sum));
+                let specular = times_intensity(material.specular);
+                let highlight = n_h.clipped_power(material.exponent);
                 light = add(&light, &scale(&specular, &highlight));
             }
         }

@@ -85,14 +85,20 @@ impl Program {
         })
     }
 
-    /// How often its main thread has gone to sleep so far: it must, to wake up.
-    pub fn sleeps(&self) -> u64 {
-        let file = format!("/proc/{}/status", self.process.id());
-        let status = std::fs::read_to_string(file).unwrap();
-        let line = status
+    /// What its main thread has done so far: the times that it was put to sleep or to wait, and its ticks of processor time.
+    pub fn activity(&self) -> Vec<String> {
+        let read = |file: &str| {
+            let path = format!("/proc/{0}/task/{0}/{file}", self.process.id());
+            std::fs::read_to_string(path).unwrap()
+        };
+        let (status, stat) = (read("status"), read("stat"));
+        let switches = status
             .lines()
-            .find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
-        line.unwrap().trim().parse().unwrap()
+            .filter(|line| line.contains("_ctxt_switches:"));
+        // After the name in brackets, utime and stime are the 12th and 13th.
+        let (_, fields) = stat.rsplit_once(')').unwrap();
+        let ticks = fields.split_whitespace().skip(11).take(2);
+        switches.chain(ticks).map(str::to_owned).collect()
     }
 
     /// Waits until it has ended: its status, and all of its standard error.

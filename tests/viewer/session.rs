@@ -41,12 +41,11 @@ impl Session {
     /// Starts the program with `arguments` under an Xvfb, waits for its first frame and gives it the keyboard. `None` where there is
     /// no Xvfb.
     pub fn start(arguments: &[&str]) -> Option<Session> {
-        Session::start_with(arguments, &[])
+        Some(Session::on(Xvfb::start(&[])?, arguments, &[]))
     }
 
-    /// The same with further variables in the program's environment.
-    pub fn start_with(arguments: &[&str], environment: &[(&str, &str)]) -> Option<Session> {
-        let xvfb = Xvfb::start(&[])?;
+    /// The same on an Xvfb that runs, with further variables in the program's environment.
+    pub fn on(xvfb: Xvfb, arguments: &[&str], environment: &[(&str, &str)]) -> Session {
         let folder = tempfile::tempdir().unwrap();
         let (connection, screen) = x11rb::connect(Some(&xvfb.display)).unwrap();
         let root = connection.setup().roots[screen].root;
@@ -64,7 +63,7 @@ impl Session {
         session.program.line("first frame");
         session.window = wait_for("the window", || session.find());
         session.focus();
-        Some(session)
+        session
     }
 
     /// The window of the program, once it can be seen.

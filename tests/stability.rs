@@ -1,0 +1,205 @@
+//! Promise: where others stumble, exact and reference make no wrong decision and round every sample correctly; and how far
+//! off fast and double are there is known to the pixel.
+//!
+//! Every scene in `tests/scenes` is one that provokes something, which its first line names. The truth is the plain evaluation
+//! beside this file. It is slow, so it is asked about the pixels on either side of every border, and some others; over the
+//! whole frame exact and reference, which go different ways, must agree bit for bit, and the others are measured against them.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test stops at the first surprise, and shows its table"
+)]
+
+mod plain;
+#[path = "stability/table.rs"]
+mod table;
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::thread;
+
+use firsthit::tracer::Decision;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use plain::Plain;
+use table::{Errors, Row, TABLE};
+
+/// N: a power of two, so that samples at α = 0 are short binary fractions, which scenes can meet exactly.
+const SIZE: u32 = 128;
+
+/// At most about this many pixels of a frame are evaluated plainly.
+const SAMPLED: usize = 400;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/scenes")
+}
+
+struct Frame {
+    samples: Vec<u32>,
+    decisions: Vec<Decision>,
+    finite: bool,
+}
+
+fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64) -> Frame {
+    let mut image = Image::new(SIZE).unwrap();
+    let decisions = Tracer::new(kernel, 1)
+        .unwrap()
+        .trace_with_decisions(scene, stage, alpha, &mut image)
+        .unwrap();
+    let samples = image.samples();
+    Frame {
+        finite: samples.iter().all(|sample| sample.is_finite()),
+        samples: samples.iter().map(|sample| sample.to_bits()).collect(),
+        decisions,
+    }
+}
+
+/// How far a frame is from the truth.
+fn errors(got: &Frame, truth: &Frame) -> Errors {
+    let mut errors = Errors {
+        wrong: 0,
+        misrounded: 0,
+        ulp: 0,
+    };
+    let decisions = got.decisions.iter().zip(&truth.decisions);
+    let samples = got.samples.chunks(3).zip(truth.samples.chunks(3));
+    for ((got, truth), (got_samples, true_samples)) in decisions.zip(samples) {
+        errors.wrong += u32::from(got != truth);
+        for (&got_sample, &true_sample) in got_samples.iter().zip(true_samples) {
+            errors.misrounded += u32::from(got_sample != true_sample);
+            // Floats that are not negative are in the order of their bits.
+            if got == truth {
+                errors.ulp = errors.ulp.max(got_sample.abs_diff(true_sample));
+            }
+        }
+    }
+    errors
+}
+
+/// The pixels to evaluate plainly: those next to another decision, thinned out if they are many, and some others.
+fn sampled(decisions: &[Decision]) -> BTreeSet<u32> {
+    let differs = |a: u32, b: u32| decisions[a as usize] != decisions[b as usize];
+    let mut border = BTreeSet::new();
+    for index in 0..SIZE * SIZE {
+        let right = (index % SIZE + 1 < SIZE).then_some(index + 1);
+        let up = (index / SIZE + 1 < SIZE).then_some(index + SIZE);
+        for neighbour in [right, up].into_iter().flatten() {
+            if differs(index, neighbour) {
+                border.extend([index, neighbour]);
+            }
+        }
+    }
+    let thin = border.len().div_ceil(SAMPLED * 3 / 4).max(1);
+    let others = (0..SIZE * SIZE).step_by((SIZE * SIZE) as usize * 4 / SAMPLED + 1);
+    border.into_iter().step_by(thin).chain(others).collect()
+}
+
+/// The pixels of a frame that the plain evaluation sees otherwise.
+fn wrong(frame: &Frame, plain: &Plain<'_>, pixels: &BTreeSet<u32>) -> Vec<String> {
+    let pixels = pixels.iter().filter_map(|&index| {
+        let (column, row) = (index % SIZE, index / SIZE);
+        let (decision, color) = plain.pixel(column, row);
+        let place = index as usize;
+        let got = &frame.samples[3 * place..3 * place + 3];
+        let same = frame.decisions[place] == decision && got == color.map(f32::to_bits);
+        (!same).then(|| {
+            let got: Vec<f32> = got.iter().map(|&bits| f32::from_bits(bits)).collect();
+            format!(
+                "({column}, {row}): {:?} {got:?} instead of {decision:?} {color:?}",
+                frame.decisions[place]
+            )
+        })
+    });
+    pixels.collect()
+}
+
+/// Checks a row: what is wrong, or the row as it should be.
+fn check(row: &Row) -> Result<(), String> {
+    let text = std::fs::read_to_string(folder().join(row.scene).with_extension("toml")).unwrap();
+    let scene = Scene::from_toml(&text).unwrap();
+    let stage = Stage::from_number(row.stage).unwrap();
+    let name = format!("{}, stage {}, α = {:?}", row.scene, row.stage, row.alpha);
+    let trace = |kernel: Kernel| {
+        let frame = trace(kernel, &scene, stage, row.alpha);
+        let problem = format!("{name}: {} gives a NaN or an infinity", kernel.name());
+        if frame.finite {
+            Ok(frame)
+        } else {
+            Err(problem)
+        }
+    };
+    let (exact, reference) = (trace(Kernel::Exact)?, trace(Kernel::Reference)?);
+    let apart = errors(&exact, &reference);
+    if apart.wrong > 0 || apart.misrounded > 0 {
+        return Err(format!("{name}: exact and reference differ: {apart:?}"));
+    }
+    let plain = Plain::new(&scene, stage, row.alpha, SIZE, row.bits);
+    let wrong = wrong(&exact, &plain, &sampled(&exact.decisions));
+    if let Some(first) = wrong.first() {
+        return Err(format!(
+            "{name}: {} pixels wrong, the first {first}",
+            wrong.len()
+        ));
+    }
+
+    let fast = errors(&trace(Kernel::Fast)?, &reference);
+    let double = errors(&trace(Kernel::Double)?, &reference);
+    eprintln!(
+        "{name:56} wrong pixels {:6} {:6} {:6}   misrounded samples {:6} {:6} {:6}",
+        fast.wrong, double.wrong, apart.wrong, fast.misrounded, double.misrounded, apart.misrounded
+    );
+    if fast != row.fast || double != row.double {
+        let row = Row {
+            fast,
+            double,
+            ..row.clone()
+        };
+        return Err(row.to_string());
+    }
+    Ok(())
+}
+
+/// Allowances that are exceeded, and those that are looser than needed: both fail.
+#[test]
+fn every_error_is_as_the_table_says() {
+    eprintln!(
+        "{:56}                fast double  exact                        fast double  exact",
+        ""
+    );
+    let (rows, problems) = (Mutex::new(TABLE.iter()), Mutex::new(Vec::new()));
+    let next = || rows.lock().unwrap().next();
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().unwrap().get() {
+            scope.spawn(|| {
+                while let Some(row) = next() {
+                    if let Err(problem) = check(row) {
+                        problems.lock().unwrap().push(problem);
+                    }
+                }
+            });
+        }
+    });
+    let problems = problems.into_inner().unwrap();
+    assert!(
+        problems.is_empty(),
+        "{} rows of tests/stability/table.rs are not as they should be:\n{}",
+        problems.len(),
+        problems.join("\n")
+    );
+}
+
+#[test]
+fn every_scene_is_in_the_table_and_says_what_it_provokes() {
+    let files: BTreeSet<String> = std::fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .map(|path| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text.starts_with("# "), "{}", path.display());
+            path.file_stem().unwrap().to_str().unwrap().to_owned()
+        })
+        .collect();
+    let listed: BTreeSet<String> = TABLE.iter().map(|row| row.scene.to_owned()).collect();
+    assert_eq!(files, listed);
+}
