@@ -11,6 +11,8 @@ mod line;
 mod listing;
 mod number;
 mod pixel;
+#[cfg(test)]
+mod rational;
 mod shading;
 mod sphere;
 mod surface;

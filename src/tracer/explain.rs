@@ -275,7 +275,7 @@ impl<R: Real> Picture<'_, R> {
             Some(halfway) => say(text, "h", Triple(upright(self.unit(halfway)))),
             None => say(text, "h", "none: v + l = 0, and there is no highlight"),
         }
-        let terms = shading.terms(hit.normal, hit.normal_length)?;
+        let terms = shading.terms(&hit)?;
         say(text, "n·l", Short(terms.normal_light.to_f64()));
         if let Some(one_minus) = terms.one_minus_normal_halfway {
             say(
@@ -326,7 +326,7 @@ impl<R: Real> Picture<'_, R> {
         view: &View<R>,
         hit: &Hit<R>,
     ) -> Result<(), R::Doubt> {
-        if view.facing_light(hit)?.is_le() {
+        if view.shading.facing_light(hit)?.is_le() {
             say(
                 text,
                 "in shadow",

@@ -151,7 +151,7 @@ impl<'a, R: Real> Picture<'a, R> {
                 Solids::All,
             )? {
                 Some((solid, hit)) => {
-                    let light = self.view.shading.lit(hit.normal, hit.normal_length)?;
+                    let light = self.view.shading.lit(&hit)?;
                     (
                         Decision::Solid(seen(solid, &hit, false)),
                         self.color(solid).times(light),
@@ -255,7 +255,7 @@ impl<'a, R: Real> Picture<'a, R> {
         hit: &Hit<R>,
     ) -> Result<(bool, Vector<R>), R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
-        let turned_away = || view.facing_light(hit).map(Ordering::is_le);
+        let turned_away = || view.shading.facing_light(hit).map(Ordering::is_le);
         let by_solid = || view.is_shadowed(&ray);
         let by_surface = || {
             self.floor
@@ -268,7 +268,7 @@ impl<'a, R: Real> Picture<'a, R> {
         let light = if in_shadow {
             view.shading.ambient()
         } else {
-            view.shading.lit(hit.normal, hit.normal_length)?
+            view.shading.lit(hit)?
         };
         Ok((in_shadow, self.color(solid).times(light)))
     }

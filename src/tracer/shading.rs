@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::line::Direction;
+use super::line::{Direction, Hit};
 use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Scene;
@@ -65,12 +65,20 @@ impl<R: Real> Shading<R> {
         self.halfway
     }
 
-    /// The terms of equation 4-1 where the outward normal is `normal`, of length `length`.
-    pub(super) fn terms(&self, normal: Vector<R>, length: R) -> Result<Terms<R>, R::Doubt> {
+    /// The sign of n·l where a solid is hit.
+    pub(super) fn facing_light(&self, hit: &Hit<R>) -> Result<Ordering, R::Doubt> {
+        match hit.facing_light {
+            Some(decided) => Ok(decided),
+            None => hit.normal.dot(self.to_light.vector).sign(),
+        }
+    }
+
+    /// The terms of equation 4-1 where a solid is hit.
+    pub(super) fn terms(&self, hit: &Hit<R>) -> Result<Terms<R>, R::Doubt> {
+        let (normal, length) = (hit.normal, hit.normal_length);
         let none = Vector::exact(DVec3::ZERO);
-        let cosine = normal.dot(self.to_light.vector);
-        let normal_light = cosine / (length * self.to_light_length);
-        let diffuse = if cosine.sign()?.is_gt() {
+        let normal_light = normal.dot(self.to_light.vector) / (length * self.to_light_length);
+        let diffuse = if self.facing_light(hit)?.is_gt() {
             self.diffuse * normal_light
         } else {
             none
@@ -93,8 +101,8 @@ impl<R: Real> Shading<R> {
     }
 
     /// L of equation 4-1 there.
-    pub(super) fn lit(&self, normal: Vector<R>, length: R) -> Result<Vector<R>, R::Doubt> {
-        let terms = self.terms(normal, length)?;
+    pub(super) fn lit(&self, hit: &Hit<R>) -> Result<Vector<R>, R::Doubt> {
+        let terms = self.terms(hit)?;
         Ok(self.ambient + terms.diffuse + terms.specular)
     }
 }

@@ -345,12 +345,4 @@ impl<R: Real> View<R> {
             leaves: Some(leaves),
         }
     }
-
-    /// The sign of n·l where a solid is hit.
-    pub(super) fn facing_light(&self, hit: &Hit<R>) -> Result<Ordering, R::Doubt> {
-        match hit.facing_light {
-            Some(decided) => Ok(decided),
-            None => hit.normal.dot(self.shading.to_light.vector).sign(),
-        }
-    }
 }
