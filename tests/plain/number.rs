@@ -1,9 +1,9 @@
 //! Numbers of a chosen number of bits that know when they are zero.
 //!
 //! Each carries a bound on the errors of all roundings before it, as a power of two: a few times 2^(`error` − bits). What is not
-//! rounded has none, so that rational numbers that fit are exact. A number below 2^(`error` − bits/2) counts as exactly 0: half of
-//! the bits would all have to cancel by accident. A test that evaluates in B and in 2 B bits, and finds the same, has seen that a
-//! number smaller than 2^(−B/2) of its terms is smaller than 2^(−B) of them: then it is 0, or no scene comes near it.
+//! rounded has none, so that rational numbers that fit are exact. A number below 2^(`error` − bits/2) counts as exactly 0.
+//! A number that is not 0 would have to lose half of its bits by accident to be taken for one, and half of twice as many in
+//! an evaluation of twice the bits: one that agrees in both is 0, or smaller beyond what short scenes can bring about.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -259,7 +259,7 @@ impl Aim {
             What::Border => {
                 let (height, half_width) = model.surface.as_mut()?;
                 let floor = on_floor(*height);
-                let side = if self.solid % 2 == 0 {
+                let side = if self.solid.is_multiple_of(2) {
                     floor.x
                 } else {
                     floor.z
