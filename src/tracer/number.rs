@@ -130,8 +130,8 @@ impl Real for f32 {
     }
 
     fn to_sample(self) -> Result<f32, Infallible> {
-        // A NaN or an infinity from numbers that 24 bits or their exponents cannot hold is no sample: NaN.max(0) is 0.
-        Ok(self.max(0.0).min(f32::MAX) + 0.0)
+        // A NaN or an infinity from numbers that 24 bits or their exponents cannot hold is no sample, and a zero is +0.
+        Ok(if self > 0.0 { self.min(f32::MAX) } else { 0.0 })
     }
 
     fn to_f64(self) -> f64 {
