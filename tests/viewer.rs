@@ -471,9 +471,25 @@ fn no_display_is_one_line() {
     refused(&[], &["WAYLAND_DISPLAY", "DISPLAY"]);
     refused(&[("DISPLAY", "")], &["WAYLAND_DISPLAY", "DISPLAY"]);
     refused(&[("DISPLAY", ":64000")], &["DISPLAY=:64000"]);
+}
+
+#[test]
+fn no_wayland_display_is_one_line() {
+    // Without Wayland's libraries that is the line, whatever the display.
+    for library in ["libwayland-client.so.0", "libwayland-egl.so.1"] {
+        // SAFETY: Wayland's libraries run no code of consequence when they are loaded.
+        if let Err(error) = unsafe { libloading::Library::new(library) } {
+            assert!(std::env::var_os("CI").is_none(), "{library}: {error}");
+            eprintln!(
+                "skipped: no {library} ({error}); Debian packages: libwayland-client0 libwayland-egl1"
+            );
+            return;
+        }
+    }
+    let nowhere = "/nowhere/wayland-0";
     refused(
-        &[("WAYLAND_DISPLAY", "/nowhere/wayland-0")],
-        &["WAYLAND_DISPLAY=/nowhere/wayland-0"],
+        &[("WAYLAND_DISPLAY", nowhere)],
+        &[&format!("WAYLAND_DISPLAY={nowhere}")],
     );
 }
 
