@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use super::extent::Extents;
 use super::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use super::pixel::{Picture, Pixel, mirrors};
-use super::view::{Crossings, Frame};
+use super::view::{Frame, FrameBearings};
 use crate::scene::Scene;
 use crate::stage::Stage;
 
@@ -38,10 +38,11 @@ impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
     pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
         let frame = frame::<R>(alpha, size);
         let extents = Extents::new(scene, &self::frame(alpha, size), size);
-        let crossing = |index, mirrored| frame.crossing(scene, index, mirrored);
-        let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
-        let Ok(picture) = Picture::new(scene, stage, &frame, size, &crossings, &extents);
-        Plain(picture)
+        let bearings = |mirrored| frame.bearings(scene, mirrored);
+        let Ok(bearings) = FrameBearings::decide(mirrors(scene, stage), bearings);
+        Plain(Picture::new(
+            scene, stage, &frame, size, &bearings, &extents,
+        ))
     }
 }
 
@@ -63,12 +64,12 @@ pub(super) struct Ladder<'a> {
     stage: Stage,
     alpha: f64,
     size: u32,
-    crossings: Crossings,
+    bearings: FrameBearings,
     extents: Extents,
-    /// `None` where the frame itself is in doubt already, or the kernel does without this rung.
+    /// `None` where the kernel does without this rung.
     bounded: Option<Picture<'a, Bounded>>,
     /// Made when it is first needed.
-    double_double: OnceLock<Option<Picture<'a, DoubleDouble>>>,
+    double_double: OnceLock<Picture<'a, DoubleDouble>>,
 }
 
 impl<'a> Ladder<'a> {
@@ -76,28 +77,26 @@ impl<'a> Ladder<'a> {
     pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32, lowest: Rung) -> Self {
         let bounded = frame::<Bounded>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
-        let crossing = |index, mirrored| {
+        let bearings = |mirrored| {
             bounded
-                .crossing(scene, index, mirrored)
-                .or_else(|Doubt| double_double.crossing(scene, index, mirrored))
+                .bearings(scene, mirrored)
+                .or_else(|Doubt| double_double.bearings(scene, mirrored))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        frame::<Expression>(alpha, size).crossing(scene, index, mirrored)
+                        frame::<Expression>(alpha, size).bearings(scene, mirrored)
                     })
                 })
         };
-        let Ok(crossings) = Crossings::new(scene, mirrors(scene, stage), crossing);
+        let Ok(bearings) = FrameBearings::decide(mirrors(scene, stage), bearings);
         let extents = Extents::new(scene, &bounded, size);
-        let bounded = match lowest {
-            Rung::Double => Picture::new(scene, stage, &bounded, size, &crossings, &extents).ok(),
-            _ => None,
-        };
+        let bounded = (lowest == Rung::Double)
+            .then(|| Picture::new(scene, stage, &bounded, size, &bearings, &extents));
         Ladder {
             scene,
             stage,
             alpha,
             size,
-            crossings,
+            bearings,
             extents,
             bounded,
             double_double: OnceLock::new(),
@@ -110,7 +109,7 @@ fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
     Frame::new(sin, cos, size)
 }
 
-impl Ladder<'_> {
+impl<'a> Ladder<'a> {
     /// The answer of the cheapest arithmetic that has one, and which that was.
     fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
         if let Some(Ok(answer)) = self
@@ -120,37 +119,25 @@ impl Ladder<'_> {
         {
             return (answer, Rung::Double);
         }
-        let double_double = self.double_double.get_or_init(|| {
-            let frame = frame(self.alpha, self.size);
-            Picture::new(
-                self.scene,
-                self.stage,
-                &frame,
-                self.size,
-                &self.crossings,
-                &self.extents,
-            )
-            .ok()
-        });
-        if let Some(Ok(answer)) = double_double
-            .as_ref()
-            .map(|picture| question.put_to(picture))
-        {
+        let double_double = self.double_double.get_or_init(|| self.picture());
+        if let Ok(answer) = question.put_to(double_double) {
             return (answer, Rung::DoubleDouble);
         }
         Expression::session(|| {
-            let frame = frame::<Expression>(self.alpha, self.size);
-            let Ok(picture) = Picture::new(
-                self.scene,
-                self.stage,
-                &frame,
-                self.size,
-                &self.crossings,
-                &self.extents,
-            );
-            let Ok(answer) = question.put_to(&picture);
+            let Ok(answer) = question.put_to(&self.picture::<Expression>());
             (answer, Rung::Arbitrary)
         })
+    }
+
+    fn picture<R: Real>(&self) -> Picture<'a, R> {
+        Picture::new(
+            self.scene,
+            self.stage,
+            &frame(self.alpha, self.size),
+            self.size,
+            &self.bearings,
+            &self.extents,
+        )
     }
 }
 

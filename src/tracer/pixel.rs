@@ -9,7 +9,7 @@ use super::line::{Hit, Line};
 use super::number::{Real, all, any};
 use super::surface::Surface;
 use super::vector::Vector;
-use super::view::{Crossings, Frame, Reach, Solids, View, looking};
+use super::view::{Frame, FrameBearings, Reach, Solids, View, looking};
 use crate::scene::Scene;
 use crate::stage::Stage;
 
@@ -49,16 +49,15 @@ pub(super) fn mirrors(scene: &Scene, stage: Stage) -> bool {
 pub(super) type Pixel = (Decision, [f32; 3]);
 
 impl<'a, R: Real> Picture<'a, R> {
-    /// `crossings` and `extents` are those of the same frame.
+    /// `bearings` and `extents` are those of the same frame.
     pub(super) fn new(
         scene: &'a Scene,
         stage: Stage,
         frame: &Frame<R>,
         size: u32,
-        crossings: &Crossings,
+        bearings: &FrameBearings,
         extents: &Extents,
-    ) -> Result<Self, R::Doubt> {
-        let view = |mirrored| View::new(scene, frame, crossings, extents, mirrored);
+    ) -> Self {
         let floor = match (scene.surface(), frame.surface(scene), &extents.surface) {
             (Some(described), Some(surface), Some(extent)) if stage >= Stage::Shadow => {
                 Some(Floor {
@@ -66,26 +65,22 @@ impl<'a, R: Real> Picture<'a, R> {
                     extent: extent.clone(),
                     color: Vector::exact(described.color),
                     height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
-                    mirror: if mirrors(scene, stage) {
-                        Some(Mirror {
-                            view: view(true)?,
-                            reflectance: R::exact(described.reflectance),
-                        })
-                    } else {
-                        None
-                    },
+                    mirror: bearings.mirrored.as_ref().map(|bearings| Mirror {
+                        view: View::new(scene, frame, bearings, &extents.mirrored, true),
+                        reflectance: R::exact(described.reflectance),
+                    }),
                 })
             }
             _ => None,
         };
-        Ok(Picture {
+        Picture {
             scene,
             stage,
             size,
             frame: *frame,
-            view: view(false)?,
+            view: View::new(scene, frame, &bearings.direct, &extents.direct, false),
             floor,
-        })
+        }
     }
 
     /// The pixel at `column` from the left and `row` from the bottom.

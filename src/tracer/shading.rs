@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::line::{Direction, Hit};
-use super::number::{Real, all};
+use super::number::Real;
 use super::vector::Vector;
 use crate::scene::Scene;
 
@@ -23,28 +23,22 @@ pub(super) struct Shading<R> {
 }
 
 impl<R: Real> Shading<R> {
-    /// `looking` is the way the eye's rays go: v is its opposite.
+    /// `looking` is the way the eye's rays go: v is its opposite. `light_into_eye` says whether so is l: v + l = 0.
     pub(super) fn new(
         scene: &Scene,
         looking: &Direction<R>,
         to_light: Direction<R>,
-    ) -> Result<Self, R::Doubt> {
+        light_into_eye: bool,
+    ) -> Self {
         let (light, material) = (scene.light(), scene.material());
         let to_light_length = to_light.squared_length.sqrt();
-        // l is opposite to v where it goes exactly the way that the eye looks.
-        let crossed = looking.vector.cross(to_light.vector);
-        let along = looking.vector.dot(to_light.vector).sign();
-        let across = [crossed.x, crossed.y, crossed.z].map(|x| x.sign().map(Ordering::is_eq));
-        let opposite = all(across.into_iter().chain([along.map(Ordering::is_gt)]))?;
-        let halfway = if opposite {
-            None
-        } else {
+        let halfway = (!light_into_eye).then(|| {
             let v = -looking.vector.divided_by(looking.squared_length.sqrt());
             let sum = v + to_light.vector.divided_by(to_light_length);
-            Some(sum.divided_by(sum.length()))
-        };
+            sum.divided_by(sum.length())
+        });
         let intensity = Vector::exact(light.intensity);
-        Ok(Shading {
+        Shading {
             to_light,
             to_light_length,
             halfway,
@@ -52,7 +46,7 @@ impl<R: Real> Shading<R> {
             diffuse: Vector::exact(material.diffuse).times(intensity),
             specular: Vector::exact(material.specular).times(intensity),
             exponent: material.exponent,
-        })
+        }
     }
 
     /// k_a I_a: what a point in shadow shows of its colour, and all that a shadow on the surface shows.

@@ -18,9 +18,9 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::extent::{Extent, Extents};
+use super::extent::Extent;
 use super::line::{Direction, Hit, Line};
-use super::number::{Real, any};
+use super::number::{Real, all, any};
 use super::shading::Shading;
 use super::sphere::Sphere;
 use super::surface::Surface;
@@ -95,42 +95,65 @@ impl<R: Real> Frame<R> {
         )
     }
 
-    /// The sign of n·d for each face of a tetrahedron and the eye's direction d.
-    pub(super) fn crossing(
-        &self,
-        scene: &Scene,
-        index: usize,
-        mirrored: bool,
-    ) -> Result<Crossing, R::Doubt> {
+    /// The way to the light, reflected for the mirror.
+    fn to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
+        let direction = scene.light().scaled_direction();
+        let turned = -self.turn(direction);
+        Direction {
+            vector: if mirrored {
+                Vector::new(turned.x, -turned.y, turned.z)
+            } else {
+                turned
+            },
+            // No turning changes it, and without one less is rounded.
+            squared_length: Vector::exact(direction).squared_length(),
+        }
+    }
+
+    /// The signs that a view of this frame is made with.
+    pub(super) fn bearings(&self, scene: &Scene, mirrored: bool) -> Result<Bearings, R::Doubt> {
         let mirror = self.mirror(scene).filter(|_| mirrored);
-        self.tetrahedron(scene, index, mirror).crossing(&looking())
+        let crossings = (0..scene.tetrahedra().len())
+            .map(|index| self.tetrahedron(scene, index, mirror).crossing(&looking()));
+        let eye = looking::<R>().vector;
+        let to_light = self.to_light(scene, mirrored).vector;
+        let across = eye.cross(to_light);
+        let beside = [across.x, across.y, across.z];
+        let parallel = beside.map(|x| x.sign().map(Ordering::is_eq));
+        let same_way = eye.dot(to_light).sign().map(Ordering::is_gt);
+        Ok(Bearings {
+            crossings: crossings.collect::<Result<_, _>>()?,
+            light_into_eye: all(parallel.into_iter().chain([same_way]))?,
+        })
     }
 }
 
 /// For each face, whether an eye ray enters there (less), runs along it (equal) or leaves (greater).
 pub(super) type Crossing = [Ordering; 4];
 
-/// How eye rays cross every tetrahedron: seen directly, and in the mirror where there is one.
-pub(super) struct Crossings {
-    direct: Vec<Crossing>,
-    mirrored: Vec<Crossing>,
+/// Signs that all pixels of a view share, and that any number can build on once they are decided.
+pub(super) struct Bearings {
+    /// How eye rays cross each tetrahedron.
+    crossings: Vec<Crossing>,
+    /// Whether v + l = 0: the light comes straight into the eye, and there is no highlight.
+    light_into_eye: bool,
 }
 
-impl Crossings {
-    /// `crossing` tells that of a tetrahedron, given by its index, directly (false) or mirrored (true).
-    pub(super) fn new<D>(
-        scene: &Scene,
+/// Those of a frame: of the scene itself, and in the mirror where there is one.
+pub(super) struct FrameBearings {
+    pub(super) direct: Bearings,
+    pub(super) mirrored: Option<Bearings>,
+}
+
+impl FrameBearings {
+    /// `bearings` tells those of the scene itself (false) or in the mirror (true), where anything `mirrors`.
+    pub(super) fn decide<D>(
         mirrors: bool,
-        crossing: impl Fn(usize, bool) -> Result<Crossing, D>,
-    ) -> Result<Crossings, D> {
-        let all = |mirrored| {
-            (0..scene.tetrahedra().len())
-                .map(|i| crossing(i, mirrored))
-                .collect::<Result<Vec<_>, D>>()
-        };
-        Ok(Crossings {
-            direct: all(false)?,
-            mirrored: if mirrors { all(true)? } else { Vec::new() },
+        bearings: impl Fn(bool) -> Result<Bearings, D>,
+    ) -> Result<FrameBearings, D> {
+        Ok(FrameBearings {
+            direct: bearings(false)?,
+            mirrored: if mirrors { Some(bearings(true)?) } else { None },
         })
     }
 }
@@ -187,33 +210,12 @@ impl<R: Real> View<R> {
     pub(super) fn new(
         scene: &Scene,
         frame: &Frame<R>,
-        crossings: &Crossings,
-        extents: &Extents,
+        bearings: &Bearings,
+        extents: &[Extent],
         mirrored: bool,
-    ) -> Result<View<R>, R::Doubt> {
-        let extents = if mirrored {
-            &extents.mirrored
-        } else {
-            &extents.direct
-        }
-        .clone();
+    ) -> View<R> {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
-        let crossings = if mirrored {
-            &crossings.mirrored
-        } else {
-            &crossings.direct
-        };
-        let direction = scene.light().scaled_direction();
-        let turned = -frame.turn(direction);
-        let to_light = Direction {
-            vector: if mirrored {
-                Vector::new(turned.x, -turned.y, turned.z)
-            } else {
-                turned
-            },
-            // No turning changes it, and without one less is rounded.
-            squared_length: Vector::exact(direction).squared_length(),
-        };
+        let to_light = frame.to_light(scene, mirrored);
         let spheres =
             scene
                 .spheres()
@@ -224,22 +226,26 @@ impl<R: Real> View<R> {
                     radius: R::exact(sphere.radius) * frame.scale,
                     support,
                 });
-        let tetrahedra = crossings.iter().enumerate().map(|(index, &crossing)| {
-            let solid = frame.tetrahedron(scene, index, mirror);
-            let from_eye = solid.sight(&looking(), crossing);
-            let from_light = solid.sight_of_light(&to_light);
-            TetrahedronInView {
-                solid,
-                from_eye,
-                from_light,
-            }
-        });
-        Ok(View {
-            extents,
+        let tetrahedra = bearings
+            .crossings
+            .iter()
+            .enumerate()
+            .map(|(index, &crossing)| {
+                let solid = frame.tetrahedron(scene, index, mirror);
+                let from_eye = solid.sight(&looking(), crossing);
+                let from_light = solid.sight_of_light(&to_light);
+                TetrahedronInView {
+                    solid,
+                    from_eye,
+                    from_light,
+                }
+            });
+        View {
+            extents: extents.to_vec(),
             spheres: spheres.collect(),
             tetrahedra: tetrahedra.collect(),
-            shading: Shading::new(scene, &looking(), to_light)?,
-        })
+            shading: Shading::new(scene, &looking(), to_light, bearings.light_into_eye),
+        }
     }
 
     /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where it is hit; of solids hit at once, the earliest in the scene's order.

@@ -5,8 +5,8 @@
 //! Every operation of IEEE 754 returns fl(a ∘ b) = (a ∘ b)(1 + δ), |δ| ≤ u = 2⁻⁵³, where nothing underflows; sums are exact
 //! where they would underflow. With a = A + α, |α| ≤ E_a for the true A, and the same for b, the error of a result v is at most
 //!
-//! - sum: E_a + E_b + u|v|,
-//! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β),
+//! - sum: E_a + E_b + |a + b − v|, where a + b − v is an f64 that TwoSum gives exactly (Knuth),
+//! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β); without u|v| where a and b have at most 53 bits together,
 //! - quotient: (E_a + |a/b|E_b)/|B| + u|v|, from A/B − a/b = ((A − a)b − a(B − b))/(Bb), with |B| ≥ |b| − E_b,
 //! - root: E_a/√a + u v, from |√A − √a| = |A − a|/(√A + √a), √A ≥ 0.
 //!
@@ -15,11 +15,13 @@
 //! u|v| in place of u|a ∘ b|, and for |v| in place of |a/b|. What underflow can take away is less than [`UNDERFLOW`]: a scene's
 //! numbers have magnitudes from 1e-30 to 1e6, no formula has a term of more than eight factors of them, and a number as
 //! small as 1e-290 is in doubt.
+//!
+//! So whatever f64 computes exactly is known exactly: at α = 0, in a scene of short binary fractions, a tie is seen to be one.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::double_double::DoubleDouble;
+use super::double_double::{DoubleDouble, two_sum};
 use super::{Doubt, Real, round_enclosure};
 use crate::camera;
 
@@ -57,13 +59,19 @@ impl Bounded {
     }
 }
 
+/// Whether a · b is an f64: their significant bits together are no more than an f64 has, and nothing underflows.
+fn is_exact_product(a: f64, b: f64) -> bool {
+    let zeros = |x: f64| (x.to_bits() | 1 << (f64::MANTISSA_DIGITS - 1)).trailing_zeros();
+    zeros(a) + zeros(b) >= f64::MANTISSA_DIGITS && (a * b).abs() > UNDERFLOW
+}
+
 impl Add for Bounded {
     type Output = Bounded;
     fn add(self, other: Bounded) -> Bounded {
-        let value = self.value + other.value;
+        let (value, rounded_off) = two_sum(self.value, other.value);
         Bounded {
             value,
-            error: (self.error + other.error + UNIT_ROUNDOFF * value.abs()) * ROUND_UP,
+            error: (self.error + other.error + rounded_off.abs()) * ROUND_UP,
         }
     }
 }
@@ -92,12 +100,20 @@ impl Mul for Bounded {
             return Bounded::exact(0.0);
         }
         let value = self.value * other.value;
+        let exact = is_exact_product(self.value, other.value);
+        let rounding = if exact {
+            0.0
+        } else {
+            UNIT_ROUNDOFF * value.abs()
+        };
+        let known = exact && self.error == 0.0 && other.error == 0.0;
+        let lost = if known { 0.0 } else { UNDERFLOW };
         let carried = self.value.abs() * other.error
             + other.value.abs() * self.error
             + self.error * other.error;
         Bounded {
             value,
-            error: (carried + UNIT_ROUNDOFF * value.abs()) * ROUND_UP + UNDERFLOW,
+            error: (carried + rounding) * ROUND_UP + lost,
         }
     }
 }

@@ -38,7 +38,7 @@ pub(crate) struct DoubleDouble {
 }
 
 /// a + b as a rounded sum and its error, exactly (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
     let a_part = sum - b_part;

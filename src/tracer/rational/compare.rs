@@ -8,7 +8,7 @@ use super::super::extent::Extents;
 use super::super::ladder::{Ladder, Pixels, Rung};
 use super::super::number::{Bounded, DoubleDouble, Expression, Real};
 use super::super::pixel::{Picture, mirrors};
-use super::super::view::{Crossings, Frame};
+use super::super::view::{Frame, FrameBearings};
 use super::{Definition, Turn};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -53,29 +53,28 @@ impl Traced<'_> {
         Frame::new(sin, cos, self.size)
     }
 
-    fn crossings(&self) -> Crossings {
+    fn bearings(&self) -> FrameBearings {
         Expression::session(|| {
             let frame = self.frame::<Expression>();
-            let crossing = |index, mirrored| frame.crossing(self.scene, index, mirrored);
-            let Ok(crossings) =
-                Crossings::new(self.scene, mirrors(self.scene, self.stage), crossing);
-            crossings
+            let bearings = |mirrored| frame.bearings(self.scene, mirrored);
+            let Ok(bearings) = FrameBearings::decide(mirrors(self.scene, self.stage), bearings);
+            bearings
         })
     }
 
     /// What is decided for each pixel; `None` where that is left in doubt.
-    fn decisions<R: Real>(&self, crossings: &Crossings, pixels: &[(u32, u32)]) -> Decisions {
+    fn decisions<R: Real>(&self, bearings: &FrameBearings, pixels: &[(u32, u32)]) -> Decisions {
         let extents = Extents::new(self.scene, &self.frame(), self.size);
         let picture = Picture::<R>::new(
             self.scene,
             self.stage,
             &self.frame(),
             self.size,
-            crossings,
+            bearings,
             &extents,
         );
         let decision = |&(column, row): &(u32, u32)| {
-            let (decision, _) = picture.as_ref().ok()?.pixel(column, row).ok()?;
+            let (decision, _) = picture.pixel(column, row).ok()?;
             Some(decision)
         };
         pixels.iter().map(decision).collect()
@@ -105,7 +104,7 @@ pub(super) fn compare(
         turn,
         size,
     };
-    let crossings = traced.crossings();
+    let bearings = traced.bearings();
     let kernels: Vec<_> = [Rung::DoubleDouble, Rung::Double]
         .into_iter()
         .filter(|_| turn == TURNS[0])
@@ -127,15 +126,15 @@ pub(super) fn compare(
             }
             decisions.iter().filter(|got| got.is_none()).count()
         };
-        let never = Expression::session(|| traced.decisions::<Expression>(&crossings, pixels));
+        let never = Expression::session(|| traced.decisions::<Expression>(&bearings, pixels));
         assert_eq!(check("expression", never), 0);
         for kernel in &kernels {
             let by_kernel = pixels.iter().map(|&(column, row)| kernel.pixel(column, row));
             check("kernel", by_kernel.map(|((decision, _), _)| Some(decision)).collect());
         }
         let in_doubt = [
-            check("double-double", traced.decisions::<DoubleDouble>(&crossings, pixels)),
-            check("bounded f64", traced.decisions::<Bounded>(&crossings, pixels)),
+            check("double-double", traced.decisions::<DoubleDouble>(&bearings, pixels)),
+            check("bounded f64", traced.decisions::<Bounded>(&bearings, pixels)),
         ];
         (expected, in_doubt)
     });
