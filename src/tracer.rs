@@ -10,6 +10,7 @@ mod ladder;
 mod line;
 mod listing;
 mod number;
+mod palette;
 mod pixel;
 #[cfg(test)]
 mod rational;

@@ -101,8 +101,8 @@ fn it_tells_the_arithmetic_that_decided() {
     };
     assert!(by(Kernel::Exact, (0, 0)).starts_with("f64 with a bound"));
     assert!(
-        by(Kernel::Exact, (255, 202)).starts_with("double-doubles"),
-        "the mirrored silhouette touches here"
+        by(Kernel::Exact, (255, 202)).starts_with("f64 with a bound"),
+        "the mirrored silhouette touches here, which f64 computes without rounding"
     );
     assert!(by(Kernel::Reference, (0, 0)).starts_with("double-doubles"));
     assert!(by(Kernel::Fast, (0, 0)).starts_with("f32"));

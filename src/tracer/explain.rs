@@ -63,7 +63,8 @@ fn say(text: &mut String, about: &str, what: impl fmt::Display) {
 impl<R: Real> Picture<'_, R> {
     /// The pixel at `column` and `row`, worked through.
     pub(super) fn explain(&self, column: u32, row: u32) -> Result<String, R::Doubt> {
-        let (decision, samples) = self.pixel(column, row)?;
+        let (decision, normal) = self.decide(column, row)?;
+        let samples = self.color(decision, normal.as_ref())?;
         let mut text = String::new();
         if self.stage == Stage::Image {
             let middle = Short(f64::from(self.size) / 2.0);
@@ -250,7 +251,7 @@ impl<R: Real> Picture<'_, R> {
             [x, y, z]
         };
         say(text, "point", Triple(point));
-        say(text, "n", Triple(upright(self.unit(hit.normal))));
+        say(text, "n", Triple(upright(self.unit(hit.normal.vector))));
         if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
             return Ok(());
         }
@@ -275,7 +276,7 @@ impl<R: Real> Picture<'_, R> {
             Some(halfway) => say(text, "h", Triple(upright(self.unit(halfway)))),
             None => say(text, "h", "none: v + l = 0, and there is no highlight"),
         }
-        let terms = shading.terms(&hit)?;
+        let terms = shading.terms(&hit.normal)?;
         say(text, "n·l", Short(terms.normal_light.to_f64()));
         if let Some(one_minus) = terms.one_minus_normal_halfway {
             say(
@@ -314,7 +315,7 @@ impl<R: Real> Picture<'_, R> {
             "c",
             format!(
                 "{}  the solid's colour, times the sum",
-                self.amounts(self.color(solid))
+                self.amounts(self.solid_color(solid))
             ),
         );
         Ok(())
@@ -326,7 +327,7 @@ impl<R: Real> Picture<'_, R> {
         view: &View<R>,
         hit: &Hit<R>,
     ) -> Result<(), R::Doubt> {
-        if view.shading.facing_light(hit)?.is_le() {
+        if view.shading.facing_light(&hit.normal)?.is_le() {
             say(
                 text,
                 "in shadow",

@@ -4,8 +4,11 @@ use std::cell::LazyCell;
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
+use super::decision::Decision;
 use super::extent::Extents;
+use super::line::Normal;
 use super::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
+use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::view::{Frame, FrameBearings};
 use crate::scene::Scene;
@@ -46,10 +49,17 @@ impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
     }
 }
 
+impl<R: Real<Doubt = Infallible>> Plain<'_, R> {
+    fn color(&self, decision: Decision, normal: Option<Normal<R>>) -> [f32; 3] {
+        let Ok(color) = self.0.color(decision, normal.as_ref());
+        color
+    }
+}
+
 impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
-        let Ok(pixel) = self.0.pixel(column, row);
-        (pixel, Rung::Double)
+        let Ok((decision, normal)) = self.0.decide(column, row);
+        ((decision, self.color(decision, normal)), Rung::Double)
     }
 
     fn explain(&self, column: u32, row: u32) -> (String, Rung) {
@@ -70,6 +80,7 @@ pub(super) struct Ladder<'a> {
     bounded: Option<Picture<'a, Bounded>>,
     /// Made when it is first needed.
     double_double: OnceLock<Picture<'a, DoubleDouble>>,
+    colors: Palette,
 }
 
 impl<'a> Ladder<'a> {
@@ -100,6 +111,7 @@ impl<'a> Ladder<'a> {
             extents,
             bounded,
             double_double: OnceLock::new(),
+            colors: Palette::new(scene),
         }
     }
 }
@@ -129,6 +141,13 @@ impl<'a> Ladder<'a> {
         })
     }
 
+    /// The samples of all pixels that show what was decided. They are settled once: where a face's colour lies halfway between two
+    /// floats, it does so in all its pixels, and arbitrary precision takes its time to see it.
+    fn color(&self, decision: Decision) -> [f32; 3] {
+        let settle = || self.settle(&ColorOf(decision)).0;
+        self.colors.get(decision).get_or_init(settle).to_owned()
+    }
+
     fn picture<R: Real>(&self) -> Picture<'a, R> {
         Picture::new(
             self.scene,
@@ -147,13 +166,25 @@ trait Question {
     fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
 }
 
-/// The pixel at a column and a row.
+/// What the pixel at a column and a row shows, and its samples where the decision alone does not tell them.
 struct PixelAt(u32, u32);
 
 impl Question for PixelAt {
-    type Answer = Pixel;
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Pixel, R::Doubt> {
-        picture.pixel(self.0, self.1)
+    type Answer = (Decision, Option<[f32; 3]>);
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
+        let (decision, normal) = picture.decide(self.0, self.1)?;
+        let color = normal.map(|normal| picture.color(decision, Some(&normal)));
+        Ok((decision, color.transpose()?))
+    }
+}
+
+/// The samples of all pixels that show what was decided.
+struct ColorOf(Decision);
+
+impl Question for ColorOf {
+    type Answer = [f32; 3];
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<[f32; 3], R::Doubt> {
+        picture.color(self.0, None)
     }
 }
 
@@ -169,7 +200,9 @@ impl Question for Explain {
 
 impl Pixels for Ladder<'_> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
-        self.settle(&PixelAt(column, row))
+        let ((decision, color), rung) = self.settle(&PixelAt(column, row));
+        let color = color.unwrap_or_else(|| self.color(decision));
+        ((decision, color), rung)
     }
 
     fn explain(&self, column: u32, row: u32) -> (String, Rung) {

@@ -36,13 +36,18 @@ pub(super) struct Hit<R> {
     pub(super) depth: R,
     /// The point itself.
     pub(super) point: Vector<R>,
-    /// The outward normal, of length `normal_length`.
-    pub(super) normal: Vector<R>,
-    pub(super) normal_length: R,
+    pub(super) normal: Normal<R>,
     /// The face it enters, for a tetrahedron.
     pub(super) face: Option<u8>,
     /// The sphere or plane that the point lies on.
     pub(super) support: Support,
+}
+
+/// The outward normal at a point of a solid: all that equation 4-1 asks about the point.
+#[derive(Clone, Copy)]
+pub(super) struct Normal<R> {
+    pub(super) vector: Vector<R>,
+    pub(super) length: R,
     /// The sign of n·l, for a face: decided where the scene was read.
     pub(super) facing_light: Option<Ordering>,
 }

@@ -26,7 +26,7 @@ use glam::{DVec3, dvec3};
 
 use super::decision::{Decision, Seen};
 use super::ladder::{Pixels, Rung};
-use super::pixel::{Pixel, quadrant};
+use super::pixel::{Pixel, QUADRANTS, quadrant};
 use super::{TraceError, explain, tetrahedron};
 use crate::camera;
 use crate::scene::{Scene, Sphere, Surface};
@@ -230,8 +230,8 @@ impl Pixels for Listing<'_> {
         let pixel = self.place(column, row);
         let (decision, color) = match self.stage {
             Stage::Image => {
-                let (decision, color) = quadrant::<f64>(column, row, self.size);
-                (decision, dvec3(color.x, color.y, color.z))
+                let number = quadrant(column, row, self.size);
+                (Decision::Quadrant(number), QUADRANTS[usize::from(number)])
             }
             Stage::Spheres => self.seen(self.nearest_sphere(pixel), |met| met.color),
             Stage::Tetrahedron => {

@@ -3,9 +3,11 @@
 use std::cmp::Ordering;
 use std::iter;
 
+use glam::DVec3;
+
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
-use super::line::{Hit, Line};
+use super::line::{Hit, Line, Normal};
 use super::number::{Real, all, any};
 use super::surface::Surface;
 use super::vector::Vector;
@@ -48,6 +50,9 @@ pub(super) fn mirrors(scene: &Scene, stage: Stage) -> bool {
 /// A pixel: what was decided, and the colour that follows from it.
 pub(super) type Pixel = (Decision, [f32; 3]);
 
+/// What was decided, and the normal of a sphere in the light.
+type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
+
 impl<'a, R: Real> Picture<'a, R> {
     /// `bearings` and `extents` are those of the same frame.
     pub(super) fn new(
@@ -83,23 +88,64 @@ impl<'a, R: Real> Picture<'a, R> {
         }
     }
 
-    /// The pixel at `column` from the left and `row` from the bottom.
-    pub(super) fn pixel(&self, column: u32, row: u32) -> Result<Pixel, R::Doubt> {
-        let (decision, color) = match self.stage {
-            Stage::Image => quadrant(column, row, self.size),
-            Stage::Spheres => self.flat(column, row, Solids::Spheres)?,
-            Stage::Tetrahedron => self.flat(column, row, Solids::Tetrahedra)?,
-            Stage::Shading => self.lit(column, row)?,
-            Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(column, row)?,
+    /// What the pixel at `column` from the left and `row` from the bottom shows, and the normal there where it shows a sphere in the
+    /// light: all else that is seen has one colour.
+    pub(super) fn decide(&self, column: u32, row: u32) -> Decided<R> {
+        match self.stage {
+            Stage::Image => Ok((Decision::Quadrant(quadrant(column, row, self.size)), None)),
+            Stage::Spheres => self.solid_alone(column, row, Solids::Spheres),
+            Stage::Tetrahedron => self.solid_alone(column, row, Solids::Tetrahedra),
+            Stage::Shading => self.solid_alone(column, row, Solids::All),
+            Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(column, row),
+        }
+    }
+
+    /// The samples of what was decided: where `normal` is `None`, of all pixels that show it.
+    pub(super) fn color(
+        &self,
+        decision: Decision,
+        normal: Option<&Normal<R>>,
+    ) -> Result<[f32; 3], R::Doubt> {
+        let color = match (decision, &self.floor) {
+            (Decision::Quadrant(number), _) => Vector::exact(QUADRANTS[usize::from(number)]),
+            (Decision::Solid(seen), _) => self.color_of_solid(&self.view, seen, normal)?,
+            (Decision::Surface, Some(floor)) => floor.color,
+            (Decision::SurfaceInShadow, _) => self.view.shading.ambient(),
+            (
+                Decision::Mirrored(seen),
+                Some(Floor {
+                    mirror: Some(mirror),
+                    ..
+                }),
+            ) => self.color_of_solid(&mirror.view, seen, normal)? * mirror.reflectance,
+            // Without a surface nothing else is decided.
+            _ => Vector::exact(self.scene.background()),
         };
-        Ok((
-            decision,
-            [
-                color.x.to_sample()?,
-                color.y.to_sample()?,
-                color.z.to_sample()?,
-            ],
-        ))
+        Ok([
+            color.x.to_sample()?,
+            color.y.to_sample()?,
+            color.z.to_sample()?,
+        ])
+    }
+
+    fn color_of_solid(
+        &self,
+        view: &View<R>,
+        seen: Seen,
+        normal: Option<&Normal<R>>,
+    ) -> Result<Vector<R>, R::Doubt> {
+        let color = self.solid_color(usize::from(seen.solid));
+        if self.stage < Stage::Shading {
+            return Ok(color);
+        }
+        let face = seen
+            .face
+            .map(|face| view.face_normal(seen.solid.into(), face.into()));
+        let light = match normal.or(face.as_ref()) {
+            Some(normal) if !seen.in_shadow => view.shading.lit(normal)?,
+            _ => view.shading.ambient(),
+        };
+        Ok(color.times(light))
     }
 
     /// The whole line of sight through a pixel.
@@ -114,51 +160,26 @@ impl<'a, R: Real> Picture<'a, R> {
         }
     }
 
-    /// Stages 2 and 3: the first hit, in the solid's colour.
-    fn flat(
-        &self,
-        column: u32,
-        row: u32,
-        solids: Solids,
-    ) -> Result<(Decision, Vector<R>), R::Doubt> {
-        Ok(
-            match self.view.first_hit(
-                (column, row),
-                &self.eye_ray(column, row),
-                Reach::Line,
-                solids,
-            )? {
-                Some((solid, hit)) => {
-                    (Decision::Solid(seen(solid, &hit, false)), self.color(solid))
-                }
-                None => self.background(),
-            },
-        )
-    }
-
-    /// Stage 4: the first hit, shaded.
-    fn lit(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
-        Ok(
-            match self.view.first_hit(
-                (column, row),
-                &self.eye_ray(column, row),
-                Reach::Line,
-                Solids::All,
-            )? {
-                Some((solid, hit)) => {
-                    let light = self.view.shading.lit(&hit)?;
-                    (
-                        Decision::Solid(seen(solid, &hit, false)),
-                        self.color(solid).times(light),
-                    )
-                }
-                None => self.background(),
-            },
-        )
+    /// Stages 2 to 4: the first hit, without shadows.
+    fn solid_alone(&self, column: u32, row: u32, solids: Solids) -> Decided<R> {
+        let ray = self.eye_ray(column, row);
+        let hit = self
+            .view
+            .first_hit((column, row), &ray, Reach::Line, solids)?;
+        Ok(match hit {
+            Some((solid, hit)) => {
+                let lit = self.stage == Stage::Shading && hit.face.is_none();
+                (
+                    Decision::Solid(seen(solid, &hit, false)),
+                    lit.then_some(hit.normal),
+                )
+            }
+            None => (Decision::Background, None),
+        })
     }
 
     /// Stages 5 to 7: the first hit among the solids and the surface.
-    fn traced(&self, column: u32, row: u32) -> Result<(Decision, Vector<R>), R::Doubt> {
+    fn traced(&self, column: u32, row: u32) -> Decided<R> {
         let ray = self.eye_ray(column, row);
         let hit = self
             .view
@@ -182,10 +203,11 @@ impl<'a, R: Real> Picture<'a, R> {
         }
         Ok(match hit {
             Some((solid, hit)) => {
-                let (in_shadow, color) = self.solid(&self.view, solid, &hit)?;
-                (Decision::Solid(seen(solid, &hit, in_shadow)), color)
+                let in_shadow = self.in_shadow(&self.view, &hit)?;
+                let seen = seen(solid, &hit, in_shadow);
+                (Decision::Solid(seen), normal_of(seen, &hit))
             }
-            None => self.background(),
+            None => (Decision::Background, None),
         })
     }
 
@@ -207,18 +229,13 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// The surface where it is seen: in shadow, mirroring, or plain.
-    fn surface_at(
-        &self,
-        floor: &Floor<R>,
-        pixel: (u32, u32),
-        point: Vector<R>,
-    ) -> Result<(Decision, Vector<R>), R::Doubt> {
+    fn surface_at(&self, floor: &Floor<R>, pixel: (u32, u32), point: Vector<R>) -> Decided<R> {
         let leaves = floor.surface.support;
         if self
             .view
             .is_shadowed(&self.view.ray_to_light(point, leaves))?
         {
-            return Ok((Decision::SurfaceInShadow, self.view.shading.ambient()));
+            return Ok((Decision::SurfaceInShadow, None));
         }
         if let Some(mirror) = &floor.mirror {
             // The eye's ray goes on straight into the reflected scene.
@@ -232,53 +249,36 @@ impl<'a, R: Real> Picture<'a, R> {
                     .view
                     .first_hit(pixel, &ray, Reach::Ahead, Solids::All)?
             {
-                let (in_shadow, color) = self.solid(&mirror.view, solid, &hit)?;
-                return Ok((
-                    Decision::Mirrored(seen(solid, &hit, in_shadow)),
-                    color * mirror.reflectance,
-                ));
+                let in_shadow = self.in_shadow(&mirror.view, &hit)?;
+                let seen = seen(solid, &hit, in_shadow);
+                return Ok((Decision::Mirrored(seen), normal_of(seen, &hit)));
             }
         }
-        Ok((Decision::Surface, floor.color))
+        Ok((Decision::Surface, None))
     }
 
-    /// Whether a point of a solid is in shadow, and its colour.
-    fn solid(
-        &self,
-        view: &View<R>,
-        solid: usize,
-        hit: &Hit<R>,
-    ) -> Result<(bool, Vector<R>), R::Doubt> {
+    /// Whether a point of a solid is in shadow.
+    fn in_shadow(&self, view: &View<R>, hit: &Hit<R>) -> Result<bool, R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
-        let turned_away = || view.shading.facing_light(hit).map(Ordering::is_le);
+        let turned_away = || view.shading.facing_light(&hit.normal).map(Ordering::is_le);
         let by_solid = || view.is_shadowed(&ray);
         let by_surface = || {
             self.floor
                 .as_ref()
                 .map_or(Ok(false), |floor| floor.surface.is_ahead(&ray))
         };
-        let in_shadow = any(iter::once_with(turned_away)
+        any(iter::once_with(turned_away)
             .chain(iter::once_with(by_solid))
-            .chain(iter::once_with(by_surface)))?;
-        let light = if in_shadow {
-            view.shading.ambient()
-        } else {
-            view.shading.lit(hit)?
-        };
-        Ok((in_shadow, self.color(solid).times(light)))
+            .chain(iter::once_with(by_surface)))
     }
 
     /// The colour c of a solid.
-    pub(super) fn color(&self, solid: usize) -> Vector<R> {
+    pub(super) fn solid_color(&self, solid: usize) -> Vector<R> {
         let spheres = self.scene.spheres();
         Vector::exact(match spheres.get(solid) {
             Some(sphere) => sphere.color,
             None => self.scene.tetrahedra()[solid - spheres.len()].color,
         })
-    }
-
-    fn background(&self) -> (Decision, Vector<R>) {
-        (Decision::Background, Vector::exact(self.scene.background()))
     }
 }
 
@@ -291,20 +291,29 @@ fn seen<R>(solid: usize, hit: &Hit<R>, in_shadow: bool) -> Seen {
     }
 }
 
+/// The normal that a colour follows: that of a sphere in the light.
+fn normal_of<R: Copy>(seen: Seen, hit: &Hit<R>) -> Option<Normal<R>> {
+    (seen.face.is_none() && !seen.in_shadow).then_some(hit.normal)
+}
+
+/// The colours of the quadrants of Code 2-1, in the order of its branches.
+pub(super) const QUADRANTS: [DVec3; 4] = [
+    DVec3::new(0.3, 0.3, 0.0),
+    DVec3::new(0.0, 0.3, 0.3),
+    DVec3::new(0.3, 0.0, 0.3),
+    DVec3::ZERO,
+];
+
 /// Code 2-1, the order of its `<=` and `>=` kept, with 250 read as N/2.
-pub(super) fn quadrant<R: Real>(column: u32, row: u32, size: u32) -> (Decision, Vector<R>) {
+pub(super) fn quadrant(column: u32, row: u32, size: u32) -> u8 {
     let (x, y) = (2 * column, 2 * row);
-    let (number, [red, green, blue]) = if x <= size && y <= size {
-        (0, [0.3, 0.3, 0.0])
+    if x <= size && y <= size {
+        0
     } else if x <= size && y >= size {
-        (1, [0.0, 0.3, 0.3])
+        1
     } else if x >= size && y <= size {
-        (2, [0.3, 0.0, 0.3])
+        2
     } else {
-        (3, [0.0, 0.0, 0.0])
-    };
-    (
-        Decision::Quadrant(number),
-        Vector::new(R::exact(red), R::exact(green), R::exact(blue)),
-    )
+        3
+    }
 }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::line::{Direction, Hit};
+use super::line::{Direction, Normal};
 use super::number::Real;
 use super::vector::Vector;
 use crate::scene::Scene;
@@ -59,20 +59,20 @@ impl<R: Real> Shading<R> {
         self.halfway
     }
 
-    /// The sign of n·l where a solid is hit.
-    pub(super) fn facing_light(&self, hit: &Hit<R>) -> Result<Ordering, R::Doubt> {
-        match hit.facing_light {
+    /// The sign of n·l.
+    pub(super) fn facing_light(&self, normal: &Normal<R>) -> Result<Ordering, R::Doubt> {
+        match normal.facing_light {
             Some(decided) => Ok(decided),
-            None => hit.normal.dot(self.to_light.vector).sign(),
+            None => normal.vector.dot(self.to_light.vector).sign(),
         }
     }
 
-    /// The terms of equation 4-1 where a solid is hit.
-    pub(super) fn terms(&self, hit: &Hit<R>) -> Result<Terms<R>, R::Doubt> {
-        let (normal, length) = (hit.normal, hit.normal_length);
+    /// The terms of equation 4-1 where a solid has this normal.
+    pub(super) fn terms(&self, n: &Normal<R>) -> Result<Terms<R>, R::Doubt> {
+        let (normal, length) = (n.vector, n.length);
         let none = Vector::exact(DVec3::ZERO);
         let normal_light = normal.dot(self.to_light.vector) / (length * self.to_light_length);
-        let diffuse = if self.facing_light(hit)?.is_gt() {
+        let diffuse = if self.facing_light(n)?.is_gt() {
             self.diffuse * normal_light
         } else {
             none
@@ -95,8 +95,8 @@ impl<R: Real> Shading<R> {
     }
 
     /// L of equation 4-1 there.
-    pub(super) fn lit(&self, hit: &Hit<R>) -> Result<Vector<R>, R::Doubt> {
-        let terms = self.terms(hit)?;
+    pub(super) fn lit(&self, normal: &Normal<R>) -> Result<Vector<R>, R::Doubt> {
+        let terms = self.terms(normal)?;
         Ok(self.ambient + terms.diffuse + terms.specular)
     }
 }

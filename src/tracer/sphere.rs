@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::iter;
 
-use super::line::{Hit, Line};
+use super::line::{Hit, Line, Normal};
 use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Support;
@@ -42,11 +42,13 @@ impl<R: Real> Sphere<R> {
         Ok(Some(Hit {
             depth,
             point: self.center + normal,
-            normal,
-            normal_length: self.radius,
+            normal: Normal {
+                vector: normal,
+                length: self.radius,
+                facing_light: None,
+            },
             face: None,
             support: self.support,
-            facing_light: None,
         }))
     }
 

@@ -8,9 +8,8 @@
 //! line cannot slip between them.
 
 use std::cmp::Ordering;
-use std::iter;
 
-use super::line::{Direction, Hit, Line};
+use super::line::{Direction, Hit, Line, Normal};
 use super::number::{Real, all};
 use super::vector::Vector;
 use crate::scene::Support;
@@ -40,6 +39,26 @@ pub(super) struct Tetrahedron<R> {
     supports: [Support; 4],
     /// The sign of n·l for each face.
     facing_light: [Ordering; 4],
+}
+
+/// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
+pub(super) struct HalfSpace<R> {
+    pub(super) normal: Vector<R>,
+    pub(super) at: Vector<R>,
+    pub(super) closed: bool,
+    /// The plane of its border, where that is known to be one that rays leave.
+    pub(super) border: Option<Support>,
+}
+
+impl<R: Real> HalfSpace<R> {
+    /// Whether the line's origin is in it; one on the border is known by name.
+    fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
+        if self.border.is_some() && self.border == line.leaves {
+            return Ok(self.closed);
+        }
+        let sign = self.normal.dot(line.origin - self.at).sign()?;
+        Ok(sign.is_gt() || (self.closed && sign.is_eq()))
+    }
 }
 
 /// A tetrahedron as lines of one direction meet it.
@@ -103,43 +122,85 @@ impl<R: Real> Tetrahedron<R> {
         self.sight(to_light, self.facing_light)
     }
 
+    /// The normal of a face, which is that of all its points.
+    pub(super) fn normal(&self, face: usize) -> Normal<R> {
+        Normal {
+            vector: self.normals[face],
+            length: self.normal_lengths[face],
+            facing_light: Some(self.facing_light[face]),
+        }
+    }
+
     /// f of a face: positive where `point` is outside of it, in units of the normal's length.
     fn outside(&self, face: usize, point: Vector<R>) -> R {
         self.normals[face].dot(point - self.vertices[FACES[face][0]])
     }
 
-    /// The sign of f at the origin of a ray, which is 0 where the ray leaves the face's own plane.
-    fn origin_outside(&self, face: usize, ray: &Line<R>) -> Result<Ordering, R::Doubt> {
-        match ray.leaves {
-            Some(plane) if plane == self.supports[face] => Ok(Ordering::Equal),
-            _ => self.outside(face, ray.origin).sign(),
+    /// Where f ≤ 0, or f < 0.
+    fn inside(&self, face: usize, closed: bool) -> HalfSpace<R> {
+        HalfSpace {
+            normal: -self.normals[face],
+            at: self.vertices[FACES[face][0]],
+            closed,
+            border: Some(self.supports[face]),
         }
     }
 
-    /// The edge function of `EDGES[edge]`, for its faces i < j. Where the line enters i and leaves j it is not negative
-    /// if and only if t_i ≤ t_j; where it enters both, if and only if t_i ≥ t_j.
-    fn side(&self, edge: usize, sight: &Sight<R>, line: &Line<R>) -> Result<Ordering, R::Doubt> {
-        sight.moments[edge]
-            .dot(line.origin - self.vertices[EDGES[edge].2[0]])
-            .sign()
+    /// Where the edge function of `EDGES[edge]` is not negative, for its faces i < j. Where lines enter i and leave j that is where
+    /// t_i ≤ t_j; where they enter both, where t_i ≥ t_j.
+    fn side(&self, edge: usize, sight: &Sight<R>) -> HalfSpace<R> {
+        HalfSpace {
+            normal: sight.moments[edge],
+            at: self.vertices[EDGES[edge].2[0]],
+            closed: true,
+            border: None,
+        }
     }
 
-    /// Whether the line meets the solid: it enters no face after it has left one, and is outside of none that it runs along.
-    fn meets(&self, sight: &Sight<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
-        let beside =
-            faces(sight, Ordering::Equal).map(|face| Ok(self.origin_outside(face, line)?.is_le()));
+    /// The half-spaces that lines of one direction which meet the solid lie in: they enter no face after they have left one,
+    /// and are outside of none that they run along.
+    pub(super) fn met<'a>(
+        &'a self,
+        sight: &'a Sight<R>,
+    ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
+        let beside = faces(sight, Ordering::Equal).map(|face| self.inside(face, true));
         let pairs = EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
+            let side = self.side(edge, sight);
             match (sight.crossing[i], sight.crossing[j]) {
-                (Ordering::Less, Ordering::Greater) => {
-                    Some(self.side(edge, sight, line).map(Ordering::is_ge))
-                }
-                (Ordering::Greater, Ordering::Less) => {
-                    Some(self.side(edge, sight, line).map(Ordering::is_le))
-                }
+                (Ordering::Less, Ordering::Greater) => Some(side),
+                (Ordering::Greater, Ordering::Less) => Some(HalfSpace {
+                    normal: -side.normal,
+                    ..side
+                }),
                 _ => None,
             }
         });
-        all(beside.chain(pairs))
+        beside.chain(pairs)
+    }
+
+    /// The half-spaces that points lie in from which a ray meets the solid at some t > 0: every face that it leaves lies ahead.
+    pub(super) fn ahead<'a>(
+        &'a self,
+        sight: &'a Sight<R>,
+    ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
+        let leaving = faces(sight, Ordering::Greater).map(|face| self.inside(face, false));
+        leaving.chain(self.met(sight))
+    }
+
+    /// Whether the line meets the solid.
+    fn meets(&self, sight: &Sight<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
+        all(self.met(sight).map(|half_space| half_space.holds(line)))
+    }
+
+    /// Two faces that lines of one direction enter, the lower first, and where they enter the lower one last.
+    pub(super) fn entered_pairs<'a>(
+        &'a self,
+        sight: &'a Sight<R>,
+    ) -> impl Iterator<Item = (usize, usize, HalfSpace<R>)> + 'a {
+        EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
+            let both = sight.crossing[i].is_lt() && sight.crossing[j].is_lt();
+            both.then(|| (i, j, self.side(edge, sight)))
+        })
     }
 
     /// The face that a line enters last, and so the solid; of several at once, the lowest. Every line enters one.
@@ -147,7 +208,7 @@ impl<R: Real> Tetrahedron<R> {
         let mut entering = faces(sight, Ordering::Less);
         let mut last = entering.next().unwrap_or(0);
         for face in entering {
-            if self.side(edge_of(last, face), sight, line)?.is_lt() {
+            if !self.side(edge_of(last, face), sight).holds(line)? {
                 last = face;
             }
         }
@@ -168,19 +229,15 @@ impl<R: Real> Tetrahedron<R> {
         Ok(Some(Hit {
             depth,
             point: line.at(depth),
-            normal: self.normals[face],
-            normal_length: self.normal_lengths[face],
+            normal: self.normal(face),
             face: Some(face as u8),
             support: self.supports[face],
-            facing_light: Some(self.facing_light[face]),
         }))
     }
 
     /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it leaves lies ahead.
     pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        let leaving = faces(sight, Ordering::Greater);
-        let ahead = leaving.map(|face| Ok(self.origin_outside(face, ray)?.is_lt()));
-        all(ahead.chain(iter::once_with(|| self.meets(sight, ray))))
+        all(self.ahead(sight).map(|half_space| half_space.holds(ray)))
     }
 }
 

@@ -19,7 +19,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::extent::Extent;
-use super::line::{Direction, Hit, Line};
+use super::line::{Direction, Hit, Line, Normal};
 use super::number::{Real, all, any};
 use super::shading::Shading;
 use super::sphere::Sphere;
@@ -246,6 +246,13 @@ impl<R: Real> View<R> {
             tetrahedra: tetrahedra.collect(),
             shading: Shading::new(scene, &looking(), to_light, bearings.light_into_eye),
         }
+    }
+
+    /// The normal of a face of a tetrahedron, given by its number among all solids.
+    pub(super) fn face_normal(&self, solid: usize, face: usize) -> Normal<R> {
+        self.tetrahedra[solid - self.spheres.len()]
+            .solid
+            .normal(face)
     }
 
     /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where it is hit; of solids hit at once, the earliest in the scene's order.

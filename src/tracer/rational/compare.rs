@@ -74,7 +74,7 @@ impl Traced<'_> {
             &extents,
         );
         let decision = |&(column, row): &(u32, u32)| {
-            let (decision, _) = picture.pixel(column, row).ok()?;
+            let (decision, _) = picture.decide(column, row).ok()?;
             Some(decision)
         };
         pixels.iter().map(decision).collect()

@@ -1,0 +1,49 @@
+//! The colours of a frame that many pixels share.
+
+use std::sync::OnceLock;
+
+use super::decision::{Decision, Seen};
+use crate::scene::Scene;
+
+/// A place for the samples of every decision that tells them: of all but a sphere in the light.
+pub(super) struct Palette {
+    places: Vec<OnceLock<[f32; 3]>>,
+    solids: usize,
+}
+
+/// Four quadrants, the background, the surface and its shadow.
+const WITHOUT_SOLIDS: usize = 7;
+
+/// Four faces in the light, a sphere without light and shadow, and either in shadow.
+const OF_A_SOLID: usize = 6;
+
+impl Palette {
+    /// An empty one.
+    pub(super) fn new(scene: &Scene) -> Palette {
+        let solids = scene.spheres().len() + scene.tetrahedra().len();
+        let mut places = Vec::new();
+        places.resize_with(WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID, OnceLock::new);
+        Palette { places, solids }
+    }
+
+    /// The place of a decision.
+    pub(super) fn get(&self, decision: Decision) -> &OnceLock<[f32; 3]> {
+        let of_solid = |mirrored: usize, seen: Seen| {
+            let place = match seen.face {
+                _ if seen.in_shadow => 5,
+                None => 4,
+                Some(face) => usize::from(face),
+            };
+            let solid = mirrored * self.solids + usize::from(seen.solid);
+            WITHOUT_SOLIDS + solid * OF_A_SOLID + place
+        };
+        &self.places[match decision {
+            Decision::Quadrant(number) => usize::from(number),
+            Decision::Background => 4,
+            Decision::Surface => 5,
+            Decision::SurfaceInShadow => 6,
+            Decision::Solid(seen) => of_solid(0, seen),
+            Decision::Mirrored(seen) => of_solid(1, seen),
+        }]
+    }
+}
