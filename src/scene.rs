@@ -1,5 +1,6 @@
 //! What exists: solids, a surface, a light, one material.
 
+mod casters;
 mod exact;
 mod file;
 
@@ -7,7 +8,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 
-pub(crate) use exact::{Facts, Support};
+pub(crate) use exact::{Facts, Side, Support};
 pub use file::{MAX_SOLIDS, SceneError};
 
 /// The built-in scene, as the TOML text that it is read from.

@@ -14,6 +14,7 @@ mod palette;
 mod pixel;
 #[cfg(test)]
 mod rational;
+mod rows;
 mod shading;
 mod sphere;
 mod surface;
@@ -24,6 +25,7 @@ mod view;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
+use fearless_simd::Level;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -31,6 +33,7 @@ use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Pixels, Plain, Rung};
 use listing::Listing;
+use rows::{Rows, Scratch};
 
 /// How numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -118,10 +121,14 @@ pub struct InDoubt {
     pub arbitrary: u64,
 }
 
+/// Rows are handed to threads in bands of so many.
+const BAND: usize = 16;
+
 /// Traces pictures: made once, used for any number of frames.
 pub struct Tracer {
     kernel: Kernel,
     pool: ThreadPool,
+    level: Level,
     in_doubt: InDoubt,
 }
 
@@ -136,6 +143,7 @@ impl Tracer {
         Ok(Tracer {
             kernel,
             pool,
+            level: Level::new(),
             in_doubt: InDoubt::default(),
         })
     }
@@ -238,11 +246,15 @@ impl Tracer {
         }
         let n = image.size();
         self.in_doubt = match self.kernel {
-            Kernel::Exact => self.trace_pixels(
-                &Ladder::new(scene, stage, alpha, n, Rung::Double),
-                image,
-                decisions,
-            ),
+            Kernel::Exact => {
+                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
+                match ladder.bounded().filter(|_| stage != Stage::Image) {
+                    Some(picture) => {
+                        self.trace_rows(&Rows::new(picture, &ladder, self.level), image, decisions)
+                    }
+                    None => self.trace_pixels(&ladder, image, decisions),
+                }
+            }
             Kernel::Fast => {
                 self.trace_pixels(&Plain::<f32>::new(scene, stage, alpha, n), image, decisions)
             }
@@ -259,6 +271,42 @@ impl Tracer {
             ),
         };
         Ok(())
+    }
+
+    fn trace_rows(
+        &self,
+        rows: &Rows<'_, Ladder<'_>>,
+        image: &mut Image,
+        decisions: Option<&mut [Decision]>,
+    ) -> InDoubt {
+        let (double_double, arbitrary) = (AtomicU64::new(0), AtomicU64::new(0));
+        let width = image.size() as usize;
+        let trace_band = |band: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
+            let mut scratch = Scratch::default();
+            let mut decisions = decisions.map(|decisions| decisions.chunks_exact_mut(width));
+            for (row, samples) in samples.chunks_exact_mut(3 * width).enumerate() {
+                let decisions = decisions.as_mut().and_then(Iterator::next);
+                let number = (band * BAND + row) as u32;
+                let [by_double_double, by_arbitrary] =
+                    rows.trace(number, samples, decisions, &mut scratch);
+                double_double.fetch_add(by_double_double, Relaxed);
+                arbitrary.fetch_add(by_arbitrary, Relaxed);
+            }
+        };
+        let bands = image
+            .samples_mut()
+            .par_chunks_mut(3 * width * BAND)
+            .enumerate();
+        self.pool.install(|| match decisions {
+            Some(decisions) => bands.zip(decisions.par_chunks_mut(width * BAND)).for_each(
+                |((band, samples), decisions)| trace_band(band, samples, Some(decisions)),
+            ),
+            None => bands.for_each(|(band, samples)| trace_band(band, samples, None)),
+        });
+        InDoubt {
+            double_double: double_double.into_inner(),
+            arbitrary: arbitrary.into_inner(),
+        }
     }
 
     fn trace_pixels(

@@ -7,6 +7,7 @@ use dashu_base::Sign;
 use dashu_ratio::{RBig, Relaxed};
 use glam::DVec3;
 
+use super::casters::casters;
 use super::{Sphere, Surface, Tetrahedron};
 
 type Rational = [Relaxed; 3];
@@ -65,6 +66,34 @@ pub(crate) struct Facts {
     pub(crate) surface: Option<Support>,
     /// The sign of n·l for each face: a number that no turning of the scene changes.
     pub(crate) facing_light: Vec<[Ordering; 4]>,
+    /// Where each solid is, spheres first, seen from the surface; `Above` where there is none.
+    pub(crate) sides: Vec<Side>,
+    /// For each solid, spheres first, the others that may stand between a point of it and the light.
+    pub(crate) casters: Vec<Vec<u16>>,
+}
+
+/// Where a solid is, seen from the surface's plane, which belongs to both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// No point of it is below.
+    Above,
+    /// No point of it is above.
+    Below,
+    /// It goes through.
+    Across,
+}
+
+impl Side {
+    /// Of a solid whose lowest and highest points compare so with the plane.
+    fn new(lowest: Ordering, highest: Ordering) -> Side {
+        if lowest.is_ge() {
+            Side::Above
+        } else if highest.is_le() {
+            Side::Below
+        } else {
+            Side::Across
+        }
+    }
 }
 
 impl Facts {
@@ -80,6 +109,32 @@ impl Facts {
             count += 1;
             Support(count)
         };
+        let side_of_sphere = |sphere: &Sphere, surface: &Surface| {
+            let [y, radius, height] =
+                exact(DVec3::new(sphere.center.y, sphere.radius, surface.height));
+            Side::new(
+                sign(&(&y - &radius - &height)),
+                sign(&(y + radius - height)),
+            )
+        };
+        let side_of_tetrahedron = |tetrahedron: &Tetrahedron, surface: &Surface| {
+            let ys = tetrahedron.vertices.map(|vertex| vertex.y);
+            let against = |y: f64| y.partial_cmp(&surface.height).unwrap_or(Ordering::Equal);
+            Side::new(
+                against(ys.into_iter().fold(f64::INFINITY, f64::min)),
+                against(ys.into_iter().fold(f64::NEG_INFINITY, f64::max)),
+            )
+        };
+        let of_surface = |side: &dyn Fn(&Surface) -> Side| surface.map_or(Side::Above, side);
+        let sides = spheres
+            .iter()
+            .map(|sphere| of_surface(&|surface| side_of_sphere(sphere, surface)))
+            .chain(tetrahedra.iter().map(|tetrahedron| {
+                of_surface(&|surface| side_of_tetrahedron(tetrahedron, surface))
+            }))
+            .collect();
+        let casters = casters(spheres, tetrahedra, -direction);
+
         let mut same_spheres = HashMap::new();
         let spheres = spheres.iter().map(|sphere| {
             let key = [
@@ -123,6 +178,8 @@ impl Facts {
             faces,
             surface,
             facing_light,
+            sides,
+            casters,
         }
     }
 }

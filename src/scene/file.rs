@@ -166,7 +166,12 @@ fn scene(file: File, standard: Option<&Scene>) -> Result<Scene, Refusal> {
         spheres.collect::<Result<Vec<_>, _>>()?,
     );
     let tetrahedra = tetrahedra.collect::<Result<Vec<_>, _>>()?;
-    let facts = Facts::new(&spheres, &tetrahedra, surface.as_ref(), light.direction);
+    let facts = Facts::new(
+        &spheres,
+        &tetrahedra,
+        surface.as_ref(),
+        light.scaled_direction(),
+    );
     Ok(Scene {
         background,
         surface,

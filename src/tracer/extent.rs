@@ -26,6 +26,15 @@ impl Extent {
         self.columns.contains(&column.into()) && self.rows.contains(&row.into())
     }
 
+    /// Its rows of a picture of `size` rows, from the first to before the last.
+    pub(super) fn rows(&self, size: u32) -> (u32, u32) {
+        let limit = |row: i64| row.clamp(0, size.into()) as u32;
+        (
+            limit(*self.rows.start()),
+            limit(self.rows.end().saturating_add(1)),
+        )
+    }
+
     /// The smallest that holds the shadows that all `points` cast on the screen along the eye's rays, each point thickened by
     /// `across` to the left and right and by `along` up and down the screen, in view space.
     fn of(points: &[Vector<Bounded>], across: Bounded, along: Bounded, size: u32) -> Extent {

@@ -34,6 +34,12 @@ pub(super) trait Pixels: Sync {
     fn explain(&self, column: u32, row: u32) -> (String, Rung);
 }
 
+/// Pixels whose colour the decision tells, but for spheres in the light.
+pub(super) trait Colors: Pixels {
+    /// The samples of all pixels that show what was decided.
+    fn color(&self, decision: Decision) -> [f32; 3];
+}
+
 /// A kernel of one number that always answers.
 pub(super) struct Plain<'a, R>(Picture<'a, R>);
 
@@ -141,13 +147,6 @@ impl<'a> Ladder<'a> {
         })
     }
 
-    /// The samples of all pixels that show what was decided. They are settled once: where a face's colour lies halfway between two
-    /// floats, it does so in all its pixels, and arbitrary precision takes its time to see it.
-    fn color(&self, decision: Decision) -> [f32; 3] {
-        let settle = || self.settle(&ColorOf(decision)).0;
-        self.colors.get(decision).get_or_init(settle).to_owned()
-    }
-
     fn picture<R: Real>(&self) -> Picture<'a, R> {
         Picture::new(
             self.scene,
@@ -195,6 +194,22 @@ impl Question for Explain {
     type Answer = String;
     fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<String, R::Doubt> {
         picture.explain(self.0, self.1)
+    }
+}
+
+impl Colors for Ladder<'_> {
+    /// They are settled once: where a face's colour lies halfway between two floats, it does so in all its pixels, and arbitrary
+    /// precision takes its time to see it.
+    fn color(&self, decision: Decision) -> [f32; 3] {
+        let settle = || self.settle(&ColorOf(decision)).0;
+        *self.colors.get(decision).get_or_init(settle)
+    }
+}
+
+impl<'a> Ladder<'a> {
+    /// The frame as f64 with a bound knows it, for a kernel that begins with that.
+    pub(super) fn bounded(&self) -> Option<&Picture<'a, Bounded>> {
+        self.bounded.as_ref()
     }
 }
 

@@ -29,10 +29,10 @@ pub(super) struct Picture<'a, R> {
 pub(super) struct Floor<R> {
     pub(super) surface: Surface<R>,
     /// Where it can be seen.
-    extent: Extent,
+    pub(super) extent: Extent,
     color: Vector<R>,
     /// (N/2) · height.
-    height_in_pixels: R,
+    pub(super) height_in_pixels: R,
     pub(super) mirror: Option<Mirror<R>>,
 }
 

@@ -54,6 +54,22 @@ impl<R: Real> Shading<R> {
         self.ambient
     }
 
+    /// l, of length 1.
+    pub(super) fn to_light_unit(&self) -> Vector<R> {
+        self.to_light.vector.divided_by(self.to_light_length)
+    }
+
+    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with in equation 4-1.
+    pub(super) fn coefficients(&self) -> [[R; 3]; 3] {
+        let (a, d, s) = (self.ambient, self.diffuse, self.specular);
+        [[a.x, d.x, s.x], [a.y, d.y, s.y], [a.z, d.z, s.z]]
+    }
+
+    /// n, the exponent of the highlight.
+    pub(super) fn exponent(&self) -> u32 {
+        self.exponent
+    }
+
     /// h, of length 1; `None` where there is no highlight.
     pub(super) fn halfway(&self) -> Option<Vector<R>> {
         self.halfway

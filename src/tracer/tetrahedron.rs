@@ -71,6 +71,13 @@ pub(super) struct Sight<R> {
     moments: [Vector<R>; 6],
 }
 
+impl<R> Sight<R> {
+    /// The faces that lines enter, in order.
+    pub(super) fn entered(&self) -> impl Iterator<Item = usize> {
+        faces(self, Ordering::Less)
+    }
+}
+
 impl<R: Real> Tetrahedron<R> {
     /// `right_handed` (the edges 0→1, 0→2, 0→3 are), `supports` and `facing_light` are decided where the scene is read.
     pub(super) fn new(
@@ -129,6 +136,16 @@ impl<R: Real> Tetrahedron<R> {
             length: self.normal_lengths[face],
             facing_light: Some(self.facing_light[face]),
         }
+    }
+
+    /// The half-space of a face, from within.
+    pub(super) fn plane(&self, face: usize) -> HalfSpace<R> {
+        self.inside(face, true)
+    }
+
+    /// Whether n·l ≤ 0 for a face.
+    pub(super) fn turned_away(&self, face: usize) -> bool {
+        self.facing_light[face].is_le()
     }
 
     /// f of a face: positive where `point` is outside of it, in units of the normal's length.

@@ -178,16 +178,17 @@ pub(super) fn looking<R: Real>() -> Direction<R> {
 /// All solids and the light, turned, scaled, and for the mirror reflected.
 pub(super) struct View<R> {
     /// Where each solid can be seen: spheres, then tetrahedra.
-    extents: Vec<Extent>,
-    spheres: Vec<Sphere<R>>,
-    tetrahedra: Vec<TetrahedronInView<R>>,
+    pub(super) extents: Vec<Extent>,
+    pub(super) spheres: Vec<Sphere<R>>,
+    pub(super) tetrahedra: Vec<TetrahedronInView<R>>,
     pub(super) shading: Shading<R>,
 }
 
-struct TetrahedronInView<R> {
-    solid: Tetrahedron<R>,
-    from_eye: Sight<R>,
-    from_light: Sight<R>,
+/// A tetrahedron, as rays from the eye and to the light meet it.
+pub(super) struct TetrahedronInView<R> {
+    pub(super) solid: Tetrahedron<R>,
+    pub(super) from_eye: Sight<R>,
+    pub(super) from_light: Sight<R>,
 }
 
 /// Which rays are meant: the whole line, or only what lies at t > 0.

@@ -54,7 +54,18 @@ impl Bounded {
         -(-self).at_least()
     }
 
-    fn is_zero(self) -> bool {
+    /// What it is about.
+    pub(crate) fn value(self) -> f64 {
+        self.value
+    }
+
+    /// How far the truth can be from that.
+    pub(crate) fn error(self) -> f64 {
+        self.error
+    }
+
+    /// Whether it is known to be 0.
+    pub(crate) fn is_zero(self) -> bool {
         self.value == 0.0 && self.error == 0.0
     }
 }

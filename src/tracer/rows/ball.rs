@@ -1,0 +1,217 @@
+//! A sphere in a row: the f64s that its pixels are shaded with, and bounds on their errors.
+//!
+//! In a row, with q = X − c_x and m as in [`Ellipse::outline`], the hit's normal, of the radius's length, is
+//!
+//! q (1, 0, 0) + m (0, 10, −3)/√109 + s (0, 3, 10)/√109, s = √(R² − m² − q²),
+//!
+//! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at the hit are linear forms in q, m
+//! and s, and per pixel there are a root, a few products and sums.
+
+use super::shape::{Ellipse, MORE, Screen, U};
+use crate::tracer::line::Direction;
+use crate::tracer::number::{Bounded, Real};
+use crate::tracer::shading::Shading;
+use crate::tracer::sphere::Sphere;
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+
+/// constant + across · q + off · m + out · s, and a bound on its error in f64.
+#[derive(Clone, Copy)]
+pub(super) struct Form {
+    constant: f64,
+    pub(super) across: f64,
+    off: f64,
+    pub(super) out: f64,
+    pub(super) error: f64,
+    /// A bound on its magnitude.
+    pub(super) magnitude: f64,
+}
+
+impl Form {
+    /// The part that does not change along a row.
+    pub(super) fn of_row(&self, m: f64) -> f64 {
+        self.constant + self.off * m
+    }
+}
+
+/// What is known about q, m and s of any pixel: a bound on their magnitudes, and on their errors.
+#[derive(Clone, Copy)]
+struct Known {
+    radius: f64,
+    errors: [f64; 3],
+}
+
+impl Known {
+    /// vector · n + constant, as a form.
+    fn form(&self, constant: Bounded, vector: Vector<Bounded>) -> Form {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let factors = [
+            vector.x,
+            (ten * vector.y - three * vector.z) / root,
+            (three * vector.y + ten * vector.z) / root,
+        ];
+        let terms = factors.iter().zip(self.errors);
+        // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
+        let carried: f64 = terms
+            .map(|(factor, error)| {
+                factor.error() * (self.radius + error) + factor.value().abs() * error
+            })
+            .sum();
+        let magnitudes: f64 = factors.iter().map(|f| f.value().abs() * self.radius).sum();
+        let error = constant.error() + carried + 8.0 * U * (constant.value().abs() + magnitudes);
+        Form {
+            constant: constant.value(),
+            across: factors[0].value(),
+            off: factors[1].value(),
+            out: factors[2].value(),
+            error: error * MORE,
+            magnitude: (constant.value().abs() + magnitudes) * MORE,
+        }
+    }
+}
+
+/// A sphere whose pixels are to be shaded.
+pub(super) struct Ball {
+    pub(super) center: f64,
+    pub(super) squared_radius: f64,
+    /// m at Y = 0, and how it changes with Y.
+    off: (f64, f64),
+    /// Pixels with less s² are left in doubt: there a root multiplies errors.
+    pub(super) least: f64,
+    known: Known,
+    at: Vector<Bounded>,
+    /// n·l, with n and l of length 1.
+    pub(super) light: Form,
+    /// n·h; `None` where there is no highlight.
+    pub(super) halfway: Option<Form>,
+    pub(super) exponent: u32,
+    /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
+    pub(super) highlight: f64,
+    /// For each channel: ambient, diffuse, specular, and a bound on the error of their sum.
+    pub(super) channels: [Channel; 3],
+}
+
+/// ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ: a colour's channel, its coefficients multiplied out.
+#[derive(Clone, Copy)]
+pub(super) struct Channel {
+    pub(super) ambient: f64,
+    pub(super) diffuse: f64,
+    pub(super) specular: f64,
+    pub(super) error: f64,
+}
+
+impl Ball {
+    /// `color` is the sphere's, times the reflectance in the mirror.
+    pub(super) fn new(
+        sphere: &Sphere<Bounded>,
+        outline: &Ellipse,
+        shading: &Shading<Bounded>,
+        color: Vector<Bounded>,
+        screen: Screen,
+    ) -> Ball {
+        let radius = sphere.radius.at_most() * MORE;
+        // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
+        let across = (sphere.center.x.error() + U * (radius + screen.reach * U)) * MORE;
+        // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference round.
+        let squared =
+            outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
+        // |√A − √a| ≤ |A − a|/√a, here with √a ≥ R/128.
+        let out = (squared * MORE / (radius / 128.0) + U * radius) * MORE;
+        let known = Known {
+            radius,
+            errors: [across, outline.off_error, out],
+        };
+        let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
+        let zero = Bounded::exact(0.0);
+        let light = known.form(zero, unit(shading.to_light_unit()));
+        let halfway = shading.halfway().map(|h| known.form(zero, unit(h)));
+        let exponent = shading.exponent();
+        // x ≤ 1 + ε: |xⁿ − yⁿ| ≤ n |x − y| (1 + ε)ⁿ⁻¹, and n − 1 products round. Small values are left out, or put too high: 2⁻⁵⁸.
+        let n = f64::from(exponent);
+        let power_error = halfway.map_or(0.0, |form| {
+            let slope = n * (form.error + U);
+            let tame = slope < 1.0 / 64.0;
+            if tame {
+                slope * 1.05 + 4.0 * f64::powi(2.0, -59)
+            } else {
+                f64::INFINITY
+            }
+        });
+        let channel = |color: Bounded, [ambient, diffuse, specular]: [Bounded; 3]| {
+            let parts = [ambient * color, diffuse * color, specular * color];
+            let [a, d, s] = parts;
+            let carried = a.error()
+                + d.error() * (1.0 + light.error)
+                + d.value().abs() * light.error
+                + if s.is_zero() {
+                    0.0
+                } else {
+                    s.error() * (1.0 + power_error) + s.value().abs() * power_error
+                };
+            let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
+            // |n·l| ≤ 1, but for errors; two products and two sums.
+            Channel {
+                ambient: a.value(),
+                diffuse: d.value(),
+                specular: s.value(),
+                error: (carried + 8.0 * U * magnitudes) * MORE,
+            }
+        };
+        let [red, green, blue] = shading.coefficients();
+        Ball {
+            center: sphere.center.x.value(),
+            squared_radius: outline.squared_radius,
+            off: outline.off,
+            least: (radius / 128.0) * (radius / 128.0) * MORE,
+            known,
+            at: sphere.center,
+            light,
+            halfway,
+            exponent,
+            // (1 − x)ⁿ ≤ e^−nx, and e^−41 < 2⁻⁵⁹.
+            highlight: libm::exp(-41.0 / n),
+            channels: [
+                channel(color.x, red),
+                channel(color.y, green),
+                channel(color.z, blue),
+            ],
+        }
+    }
+
+    /// m of the row at Y.
+    pub(super) fn off(&self, y: f64) -> f64 {
+        self.off.0 + self.off.1 * y
+    }
+
+    /// How far the hit is inside a half-space, in units of its normal's length.
+    pub(super) fn inside(&self, half_space: &HalfSpace<Bounded>) -> Form {
+        let n = half_space.normal;
+        self.known.form(n.dot(self.at - half_space.at), n)
+    }
+
+    /// The components of (hit − c) × l, and (c − hit)·l, for another sphere's centre c.
+    pub(super) fn around(
+        &self,
+        center: Vector<Bounded>,
+        to_light: &Direction<Bounded>,
+    ) -> ([Form; 3], Form) {
+        let l = to_light.vector;
+        let zero = Bounded::exact(0.0);
+        let from = self.at - center;
+        let at = from.cross(l);
+        // n × l, component by component, as a product with n.
+        let factors = [
+            Vector::new(zero, l.z, -l.y),
+            Vector::new(-l.z, zero, l.x),
+            Vector::new(l.y, -l.x, zero),
+        ];
+        let [x, y, z] = factors;
+        let moment = [
+            self.known.form(at.x, x),
+            self.known.form(at.y, y),
+            self.known.form(at.z, z),
+        ];
+        (moment, self.known.form(-from.dot(l), -l))
+    }
+}

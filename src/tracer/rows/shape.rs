@@ -1,0 +1,447 @@
+//! Where borders cross a row.
+//!
+//! # Why rows
+//!
+//! Eye rays are parallel, and so are those to the light. So every border in the picture that does not lie on a sphere is a
+//! straight line or an ellipse on the screen: a silhouette, an edge between faces, the surface's sides, the outline of a mirror
+//! image, a shadow on the surface or on a face. Each is known as a polynomial in X and Y, the place on the screen in thirds of
+//! a pixel from its centre, and a row of pixels, on which Y is fixed, crosses it at a root.
+//!
+//! A root is computed in f64 with a bound on its error, derived where it is used. The columns beyond the bound are decided;
+//! those within it, rarely one, are asked one by one.
+//!
+//! u is 2⁻⁵³, the largest relative error of an f64 operation. Bounds are sums of terms that are not negative; computing them rounds
+//! too, each by less than 2⁻⁴⁰, for which [`MORE`] makes up.
+
+use super::span::{HalfLine, Span};
+use crate::scene::Support;
+use crate::tracer::number::{Bounded, Real};
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+
+/// u, the largest relative error of one rounding to f64.
+pub(super) const U: f64 = f64::EPSILON / 2.0;
+
+/// 1 + 2⁻³⁹.
+pub(super) const MORE: f64 = 1.0 + 8192.0 * f64::EPSILON;
+
+/// Columns and rows of pixels, and their places.
+#[derive(Clone, Copy)]
+pub(super) struct Screen {
+    pub(super) size: u32,
+    /// N/2.
+    pub(super) half: f64,
+    /// 3N/2, the largest |X| and |Y|.
+    pub(super) reach: f64,
+}
+
+impl Screen {
+    pub(super) fn new(size: u32) -> Screen {
+        let half = f64::from(size) / 2.0;
+        Screen {
+            size,
+            half,
+            reach: 3.0 * half,
+        }
+    }
+
+    /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
+    pub(super) fn place(&self, number: u32) -> f64 {
+        3.0 * (f64::from(number) - self.half)
+    }
+
+    /// The first column at or after a place given in columns.
+    fn ceil(&self, place: f64) -> u32 {
+        // Less than 0 converts to 0.
+        let place = place.min(f64::from(self.size));
+        let below = place as u32;
+        if f64::from(below) < place {
+            below + 1
+        } else {
+            below
+        }
+    }
+
+    /// The number of columns up to a place given in columns.
+    fn count(&self, place: f64) -> u32 {
+        if place < 0.0 {
+            return 0;
+        }
+        (place as u32).saturating_add(1).min(self.size)
+    }
+}
+
+/// Points that the pixels' rays reach on a plane: `origin` + X · `per_column` + Y · `per_row`.
+pub(super) struct Sheet {
+    pub(super) origin: Vector<Bounded>,
+    pub(super) per_column: Vector<Bounded>,
+    pub(super) per_row: Vector<Bounded>,
+    /// The plane, if rays leave it.
+    pub(super) plane: Option<Support>,
+}
+
+/// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
+pub(super) struct HalfPlane {
+    constant: Bounded,
+    column: Bounded,
+    row: Bounded,
+    closed: bool,
+    /// A bound on the error of the sum, where it does not depend on the column, or is not computed from it.
+    error: f64,
+    crossing: Crossing,
+}
+
+/// How rows cross a border.
+enum Crossing {
+    /// Not to be told from not at all.
+    Never,
+    /// At (constant + row · Y) · −`inverse` columns from the middle, and at most `slack` columns beside that.
+    Once { inverse: f64, slack: f64 },
+}
+
+impl HalfPlane {
+    pub(super) fn new(
+        constant: Bounded,
+        column: Bounded,
+        row: Bounded,
+        closed: bool,
+        screen: Screen,
+    ) -> Self {
+        let reach = screen.reach;
+        // The errors of the coefficients, and of g = constant + row · Y: the product and the sum round, by less than
+        // 2u (|constant| + |row · Y|) each.
+        let error = (constant.error()
+            + (column.error() + row.error()) * reach
+            + 4.0 * U * (constant.value().abs() + row.value().abs() * reach))
+            * MORE;
+        let across = column.value().abs() * reach;
+        let crossing = if across > error {
+            // The root in columns, N/2 − g/(3 · column), rounds four times, by less than 4u of a number below 3N where it matters,
+            // and E/(3 |column|) is what the error moves it by.
+            let inverse = 1.0 / (3.0 * column.value());
+            Crossing::Once {
+                inverse,
+                slack: (error * inverse.abs() + 16.0 * U * 3.0 * f64::from(screen.size)) * MORE,
+            }
+        } else {
+            Crossing::Never
+        };
+        HalfPlane {
+            constant,
+            column,
+            row,
+            closed,
+            error: match crossing {
+                Crossing::Never => (error + across) * MORE,
+                Crossing::Once { .. } => error,
+            },
+            crossing,
+        }
+    }
+
+    /// The pixels whose points on the sheet lie in a half-space.
+    pub(super) fn of(half_space: &HalfSpace<Bounded>, sheet: &Sheet, screen: Screen) -> HalfPlane {
+        let n = half_space.normal;
+        if half_space.border.is_some() && half_space.border == sheet.plane {
+            // All of them lie on its border.
+            let zero = Bounded::exact(0.0);
+            return HalfPlane::new(zero, zero, zero, half_space.closed, screen);
+        }
+        HalfPlane::new(
+            n.dot(sheet.origin - half_space.at),
+            n.dot(sheet.per_column),
+            n.dot(sheet.per_row),
+            half_space.closed,
+            screen,
+        )
+    }
+
+    /// Whether the sum is known to be in it at X, Y; `None` where it is not known.
+    fn decide(&self, x: f64, y: f64) -> Option<bool> {
+        let sum = self.constant + self.row * Bounded::exact(y) + self.column * Bounded::exact(x);
+        let sign = sum.sign().ok()?;
+        Some(sign.is_gt() || (self.closed && sign.is_eq()))
+    }
+
+    /// Its columns of the row at Y.
+    pub(super) fn cross(&self, y: f64, screen: Screen) -> HalfLine {
+        let g = self.constant.value() + self.row.value() * y;
+        match self.crossing {
+            Crossing::Never => {
+                let known = if g > self.error {
+                    Some(true)
+                } else if g < -self.error {
+                    Some(false)
+                } else if self.column.is_zero() {
+                    self.decide(0.0, y)
+                } else {
+                    None
+                };
+                match known {
+                    Some(all) => HalfLine::all(all, screen.size),
+                    None => HalfLine {
+                        rightward: true,
+                        possible: 0,
+                        certain: screen.size,
+                    },
+                }
+            }
+            Crossing::Once { inverse, slack } => {
+                let root = screen.half - g * inverse;
+                let (low, high) = (root - slack, root + slack);
+                let rightward = inverse > 0.0;
+                let line = if rightward {
+                    HalfLine {
+                        rightward,
+                        possible: screen.ceil(low),
+                        certain: screen.ceil(high),
+                    }
+                } else {
+                    HalfLine {
+                        rightward,
+                        possible: screen.count(high),
+                        certain: screen.count(low),
+                    }
+                };
+                if line.possible == line.certain {
+                    line
+                } else {
+                    self.narrow(line, y, screen)
+                }
+            }
+        }
+    }
+
+    /// Asks the columns in doubt, from the outside in.
+    fn narrow(&self, mut line: HalfLine, y: f64, screen: Screen) -> HalfLine {
+        while line.possible != line.certain {
+            let column = if line.rightward {
+                line.possible
+            } else {
+                line.possible - 1
+            };
+            match self.decide(screen.place(column), y) {
+                Some(true) => line.certain = line.possible,
+                Some(false) if line.rightward => line.possible += 1,
+                Some(false) => line.possible -= 1,
+                None => break,
+            }
+        }
+        line
+    }
+}
+
+/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
+/// chord in every row.
+pub(super) struct Ellipse {
+    /// The middle of the chord at Y = 0, and how it moves with Y.
+    center: (f64, f64),
+    /// m at Y = 0, and how it changes with Y.
+    pub(super) off: (f64, f64),
+    pub(super) squared_radius: f64,
+    /// Beyond this |m| no row is crossed.
+    limit: f64,
+    /// A bound on the error of m, and of half the chord, squared.
+    pub(super) off_error: f64,
+    pub(super) chord_error: f64,
+    /// A bound on the error of an end of the chord in columns, apart from that.
+    slack: f64,
+}
+
+impl Ellipse {
+    fn new(
+        center: (Bounded, Bounded),
+        off: (Bounded, Bounded),
+        squared_radius: Bounded,
+        screen: Screen,
+    ) -> Ellipse {
+        let reach = screen.reach;
+        // A linear function of Y in f64: its coefficients' errors, and two roundings.
+        let error = |(a, b): (Bounded, Bounded)| {
+            (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
+                * MORE
+        };
+        let off_error = error(off);
+        let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
+        let limit = (radius + off_error) * MORE;
+        // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
+        let chord_error = (squared_radius.error()
+            + (2.0 * limit + off_error) * off_error
+            + 2.0 * U * (limit * limit + squared_radius.value().abs()))
+            * MORE;
+        // The chord's half is at most the radius. Its root, the sum with the middle, a third of it and the sum with N/2 round
+        // by less than u of |middle| + radius + N each.
+        let middle = center.0.value().abs() + center.1.value().abs() * reach;
+        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
+        Ellipse {
+            center: (center.0.value(), center.1.value()),
+            off: (off.0.value(), off.1.value()),
+            squared_radius: squared_radius.value(),
+            limit,
+            off_error,
+            chord_error,
+            slack,
+        }
+    }
+
+    /// The pixels from whose points on the sheet lines along `direction` meet a sphere: |(p − c) × l|² ≤ |l|² R².
+    pub(super) fn of(
+        (center, radius): (Vector<Bounded>, Bounded),
+        direction: (Vector<Bounded>, Bounded),
+        sheet: &Sheet,
+        screen: Screen,
+    ) -> Ellipse {
+        let (l, squared_length) = direction;
+        let moment = (sheet.origin - center).cross(l);
+        let per_column = sheet.per_column.cross(l);
+        let per_row = sheet.per_row.cross(l);
+        let speed = per_column.squared_length();
+        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
+        let across = l.cross(per_column);
+        let across = across.divided_by(across.length() * speed.sqrt());
+        let middle = |moment: Vector<Bounded>| -(moment.dot(per_column) / speed);
+        Ellipse::new(
+            (middle(moment), middle(per_row)),
+            (moment.dot(across), per_row.dot(across)),
+            squared_length * radius.squared() / speed,
+            screen,
+        )
+    }
+
+    /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10 (Y − c_y) − 3 (Z − c_z))/√109.
+    pub(super) fn outline(center: Vector<Bounded>, radius: Bounded, screen: Screen) -> Ellipse {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let z = Bounded::exact(screen.reach) - center.z;
+        Ellipse::new(
+            (center.x, Bounded::exact(0.0)),
+            ((-(ten * center.y) - three * z) / root, ten / root),
+            radius.squared(),
+            screen,
+        )
+    }
+
+    /// m of the row at Y.
+    pub(super) fn off(&self, y: f64) -> f64 {
+        self.off.0 + self.off.1 * y
+    }
+
+    /// Its columns of the row at Y.
+    pub(super) fn cross(&self, y: f64, screen: Screen) -> Span {
+        let m = self.off(y);
+        let beyond = m.abs() > self.limit;
+        if beyond {
+            return Span::NONE;
+        }
+        let squared = self.squared_radius - m * m;
+        let most = squared + self.chord_error;
+        let out_of_bounds = !(most.is_finite() && self.slack.is_finite());
+        if out_of_bounds {
+            return Span::unknown(screen.size);
+        }
+        if most < 0.0 {
+            return Span::NONE;
+        }
+        let middle = self.center.0 + self.center.1 * y;
+        let place = |x: f64| screen.half + x * (1.0 / 3.0);
+        let half = most.sqrt();
+        let possible = (
+            screen.ceil(place(middle - half) - self.slack),
+            screen.count(place(middle + half) + self.slack),
+        );
+        if possible.0 >= possible.1 {
+            return Span::NONE;
+        }
+        let least = squared - self.chord_error;
+        let certain = if least > 0.0 {
+            let half = least.sqrt();
+            (
+                screen.ceil(place(middle - half) + self.slack),
+                screen.count(place(middle + half) - self.slack),
+            )
+        } else {
+            (0, 0)
+        };
+        Span {
+            possible,
+            certain: if certain.0 < certain.1 {
+                certain
+            } else {
+                (possible.0, possible.0)
+            },
+        }
+    }
+
+    /// The rows that it can cross.
+    fn rows(&self, screen: Screen) -> (u32, u32) {
+        let (a, b) = self.off;
+        let ends = [-self.limit, self.limit].map(|m| (m - a) / b);
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // A row more on either side is far more than rounding takes.
+        let place = |y: f64| screen.half + y / 3.0;
+        let rows = (
+            screen.ceil(place(low) - 1.0),
+            screen.count(place(high) + 1.0),
+        );
+        if low.is_finite() && high.is_finite() {
+            rows
+        } else {
+            (0, screen.size)
+        }
+    }
+}
+
+/// A convex part of the picture: what half-planes and an ellipse have in common.
+pub(super) struct Shape {
+    half_planes: Vec<HalfPlane>,
+    ellipse: Option<Ellipse>,
+    /// The rows that it can cross.
+    rows: (u32, u32),
+}
+
+impl Shape {
+    pub(super) fn new(
+        half_planes: Vec<HalfPlane>,
+        ellipse: Option<Ellipse>,
+        screen: Screen,
+    ) -> Shape {
+        let rows = ellipse
+            .as_ref()
+            .map_or((0, screen.size), |ellipse| ellipse.rows(screen));
+        Shape {
+            half_planes,
+            ellipse,
+            rows,
+        }
+    }
+
+    /// The ellipse, if it has one.
+    pub(super) fn ellipse(&self) -> Option<&Ellipse> {
+        self.ellipse.as_ref()
+    }
+
+    /// The same where it is known to cross no other than these rows.
+    pub(super) fn within(mut self, rows: (u32, u32)) -> Shape {
+        self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
+        self
+    }
+
+    /// Its columns of a row.
+    pub(super) fn cross(&self, row: u32, screen: Screen) -> Span {
+        if row < self.rows.0 || row >= self.rows.1 {
+            return Span::NONE;
+        }
+        let y = screen.place(row);
+        let mut span = match &self.ellipse {
+            Some(ellipse) => ellipse.cross(y, screen),
+            None => Span::whole(screen.size),
+        };
+        for half_plane in &self.half_planes {
+            if span.is_none() {
+                return Span::NONE;
+            }
+            span = span.and(half_plane.cross(y, screen).span(screen.size));
+        }
+        span
+    }
+}

@@ -1,0 +1,417 @@
+//! The solids as a frame's rows cross them: seen directly, or in the mirror.
+
+use super::ball::Ball;
+use super::lanes::Caster;
+use super::shape::{Ellipse, HalfPlane, MORE, Screen, Shape, Sheet, U};
+use super::span::Span;
+use crate::scene::{Side, Support};
+use crate::stage::Stage;
+use crate::tracer::decision::{Decision, Seen};
+use crate::tracer::number::{Bounded, Real};
+use crate::tracer::pixel::Picture;
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::{View, looking};
+
+/// All solids that take part in a stage.
+pub(super) struct Solids {
+    pub(super) mirrored: bool,
+    /// Whether points can be in shadow.
+    pub(super) shadows: bool,
+    pub(super) solids: Vec<Solid>,
+}
+
+/// One of them.
+pub(super) struct Solid {
+    /// Its number in the scene.
+    pub(super) index: u16,
+    pub(super) side: Side,
+    outline: Shape,
+    depth: Depth,
+    pub(super) body: Body,
+    /// Its colour in shadow; of a flat sphere, its colour.
+    pub(super) color: [f32; 3],
+}
+
+/// How its pixels are coloured.
+pub(super) enum Body {
+    /// All alike.
+    Flat,
+    Ball(Box<Ball>, Vec<Caster>),
+    Facets(Vec<Facet>, Vec<Pair>),
+    /// Each is to be asked for.
+    Unknown,
+}
+
+/// A face that eye rays enter.
+pub(super) struct Facet {
+    pub(super) face: u8,
+    /// Whether it is in shadow where nothing else throws one.
+    pub(super) turned_away: bool,
+    pub(super) color: [f32; 3],
+    pub(super) shadows: Vec<Shape>,
+}
+
+/// Two facets, the first of the lower number, and where eye rays enter it last.
+pub(super) struct Pair {
+    pub(super) facets: (usize, usize),
+    pub(super) first: HalfPlane,
+}
+
+/// The parameter at which eye rays enter.
+enum Depth {
+    /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `ball.rs`.
+    Ball {
+        center: f64,
+        g: [f64; 2],
+        error: f64,
+        squared_error: f64,
+        support: Support,
+    },
+    /// The largest of some linear functions of X and Y, each with a bound on its error.
+    Facets(Vec<([f64; 3], f64)>),
+}
+
+impl Solids {
+    pub(super) fn new(
+        picture: &Picture<'_, Bounded>,
+        view: &View<Bounded>,
+        mirrored: bool,
+        color: &dyn Fn(Decision) -> [f32; 3],
+        screen: Screen,
+    ) -> Solids {
+        let (scene, stage) = (picture.scene, picture.stage);
+        let mut all = Solids {
+            mirrored,
+            shadows: stage >= Stage::Shadow,
+            solids: Vec::new(),
+        };
+        let facts = scene.facts();
+        let count = view.spheres.len();
+        let rising = -scene.light().direction.y;
+        // Whether the surface may stand between a point of a solid and the light.
+        let surface_shades = |solid: usize| {
+            picture.floor.is_some()
+                && !match facts.sides[solid] {
+                    Side::Above => rising > 0.0,
+                    Side::Below => rising < 0.0,
+                    Side::Across => false,
+                }
+        };
+        let reflectance = match &picture.floor {
+            Some(floor) if mirrored => floor.mirror.as_ref().map(|mirror| mirror.reflectance),
+            _ => None,
+        };
+        if stage != Stage::Tetrahedron {
+            for (index, sphere) in view.spheres.iter().enumerate() {
+                let ellipse = Ellipse::outline(sphere.center, sphere.radius, screen);
+                let body = if stage == Stage::Spheres {
+                    Body::Flat
+                } else if surface_shades(index) {
+                    Body::Unknown
+                } else {
+                    let own = picture.solid_color(index);
+                    let own = reflectance.map_or(own, |reflectance| own * reflectance);
+                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, screen);
+                    let casters = if all.shadows {
+                        casters_on(&ball, index, view, &facts.casters[index])
+                    } else {
+                        Vec::new()
+                    };
+                    Body::Ball(Box::new(ball), casters)
+                };
+                let depth = depth_of_ball(sphere.center, &ellipse, sphere.support, screen);
+                let outline = Shape::new(Vec::new(), Some(ellipse), screen);
+                let in_shadow = all.shadows;
+                let color = color(all.decision(index as u16, None, in_shadow));
+                all.solids.push(Solid {
+                    index: index as u16,
+                    side: facts.sides[index],
+                    outline,
+                    depth,
+                    body,
+                    color,
+                });
+            }
+        }
+        if stage != Stage::Spheres {
+            for (index, t) in (count..).zip(&view.tetrahedra) {
+                let planes = |half_spaces: &mut dyn Iterator<Item = HalfSpace<Bounded>>| {
+                    let sheet = eye_sheet(screen);
+                    half_spaces
+                        .map(|half_space| HalfPlane::of(&half_space, &sheet, screen))
+                        .collect::<Vec<_>>()
+                };
+                let outline = Shape::new(planes(&mut t.solid.met(&t.from_eye)), None, screen)
+                    .within(view.extents[index].rows(screen.size));
+                let entered: Vec<usize> = t.from_eye.entered().collect();
+                let (mut facets, mut depths) = (Vec::new(), Vec::new());
+                for &face in &entered {
+                    let (sheet, depth) = face_sheet(t.solid.plane(face), screen);
+                    let turned_away = all.shadows && t.solid.turned_away(face);
+                    let shadows = if all.shadows && !turned_away {
+                        shadows_on(&sheet, view, facts.casters[index].iter().copied(), screen)
+                    } else {
+                        Vec::new()
+                    };
+                    depths.push(depth);
+                    facets.push(Facet {
+                        face: face as u8,
+                        turned_away,
+                        color: color(all.decision(index as u16, Some(face as u8), false)),
+                        shadows,
+                    });
+                }
+                let place = |face: usize| entered.iter().position(|&other| other == face);
+                let sheet = eye_sheet(screen);
+                let pairs = t
+                    .solid
+                    .entered_pairs(&t.from_eye)
+                    .filter_map(|(i, j, first)| {
+                        Some(Pair {
+                            facets: (place(i)?, place(j)?),
+                            first: HalfPlane::of(&first, &sheet, screen),
+                        })
+                    });
+                let body = if surface_shades(index) {
+                    Body::Unknown
+                } else {
+                    Body::Facets(facets, pairs.collect())
+                };
+                all.solids.push(Solid {
+                    index: index as u16,
+                    side: facts.sides[index],
+                    outline,
+                    depth: Depth::Facets(depths),
+                    body,
+                    color: color(all.decision(index as u16, Some(0), all.shadows)),
+                });
+            }
+        }
+        all
+    }
+
+    /// What pixels of a solid show.
+    pub(super) fn decision(&self, solid: u16, face: Option<u8>, in_shadow: bool) -> Decision {
+        let seen = Seen {
+            solid,
+            face,
+            in_shadow,
+        };
+        if self.mirrored {
+            Decision::Mirrored(seen)
+        } else {
+            Decision::Solid(seen)
+        }
+    }
+
+    /// The solids that a row crosses.
+    pub(super) fn cross(&self, row: u32, screen: Screen, crossed: &mut Vec<(usize, Span)>) {
+        crossed.clear();
+        for (place, solid) in self.solids.iter().enumerate() {
+            // Below the surface nothing is mirrored.
+            if self.mirrored && solid.side == Side::Below {
+                continue;
+            }
+            let span = solid.outline.cross(row, screen);
+            if !span.is_none() {
+                crossed.push((place, span));
+            }
+        }
+    }
+}
+
+impl Solid {
+    /// The outline of a sphere.
+    fn ellipse(&self) -> Option<&Ellipse> {
+        self.outline.ellipse()
+    }
+
+    /// Bounds on the parameter at which the eye rays at Y, from one X to another, enter it.
+    pub(super) fn depth(&self, y: f64, ends: [f64; 2]) -> (f64, f64) {
+        match &self.depth {
+            Depth::Ball {
+                center,
+                g,
+                error,
+                squared_error,
+                ..
+            } => {
+                let Some(outline) = self.ellipse() else {
+                    return (f64::NEG_INFINITY, f64::INFINITY);
+                };
+                let m = outline.off(y);
+                let squared = |q: f64| (outline.squared_radius - m * m) - q * q;
+                let q = ends.map(|x| x - center);
+                let farthest = q[0].abs().max(q[1].abs());
+                let nearest = if q[0] * q[1] <= 0.0 {
+                    0.0
+                } else {
+                    q[0].abs().min(q[1].abs())
+                };
+                let least = (squared(farthest) - squared_error).max(0.0).sqrt();
+                let most = (squared(nearest) + squared_error).max(0.0).sqrt() * MORE;
+                // 1/√109, from below and from above.
+                const ROOT: f64 = 0.095_782_628_522_115_14;
+                let g = (g[0] + g[1] * y) / 109.0;
+                (
+                    g - most * ROOT * MORE - error,
+                    g - least * ROOT / MORE / MORE + error,
+                )
+            }
+            Depth::Facets(functions) => functions.iter().fold(
+                (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                |(low, high), ([constant, column, row], error)| {
+                    let ends = ends.map(|x| constant + column * x + row * y);
+                    (
+                        low.max(ends[0].min(ends[1]) - error),
+                        high.max(ends[0].max(ends[1]) + error),
+                    )
+                },
+            ),
+        }
+    }
+
+    /// Whether both are the same sphere.
+    pub(super) fn is_same_sphere(&self, other: &Solid) -> bool {
+        match (&self.depth, &other.depth) {
+            (Depth::Ball { support: a, .. }, Depth::Ball { support: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
+fn depth_of_ball(
+    center: Vector<Bounded>,
+    outline: &Ellipse,
+    support: Support,
+    screen: Screen,
+) -> Depth {
+    let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+    // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
+    let constant = ten * (Bounded::exact(screen.reach) - center.z) - three * center.y;
+    let magnitude = constant.value().abs() + 3.0 * screen.reach;
+    let q = center.x.error() + 2.0 * U * (center.x.value().abs() + screen.reach);
+    let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
+    let reach = radius + q;
+    Depth::Ball {
+        center: center.x.value(),
+        g: [constant.value(), 3.0],
+        error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
+        squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
+            * MORE,
+        support,
+    }
+}
+
+/// The places of the pixels on the screen, where eye rays begin.
+fn eye_sheet(screen: Screen) -> Sheet {
+    let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
+    Sheet {
+        origin: vector(0.0, 0.0, screen.reach),
+        per_column: vector(1.0, 0.0, 0.0),
+        per_row: vector(0.0, 1.0, 0.0),
+        plane: None,
+    }
+}
+
+/// Where eye rays meet the plane of a face, and at which parameter.
+fn face_sheet(face: HalfSpace<Bounded>, screen: Screen) -> (Sheet, ([f64; 3], f64)) {
+    let eye = eye_sheet(screen);
+    let d = looking::<Bounded>().vector;
+    // t = −n·(o − a)/(n·d), linear in o.
+    let speed = face.normal.dot(d);
+    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / speed);
+    let depths = [
+        depth(eye.origin - face.at),
+        depth(eye.per_column),
+        depth(eye.per_row),
+    ];
+    let magnitudes: f64 = depths
+        .iter()
+        .zip([1.0, screen.reach, screen.reach])
+        .map(|(depth, reach)| depth.value().abs() * reach)
+        .sum();
+    let errors: f64 = depths
+        .iter()
+        .zip([1.0, screen.reach, screen.reach])
+        .map(|(depth, reach)| depth.error() * reach)
+        .sum();
+    let sheet = Sheet {
+        origin: eye.origin + d * depths[0],
+        per_column: eye.per_column + d * depths[1],
+        per_row: eye.per_row + d * depths[2],
+        plane: face.border,
+    };
+    let error = (errors + 8.0 * U * magnitudes) * MORE;
+    (sheet, (depths.map(Bounded::value), error))
+}
+
+/// The pixels whose points on a sheet are in the shadows of `casters`.
+pub(super) fn shadows_on(
+    sheet: &Sheet,
+    view: &View<Bounded>,
+    casters: impl Iterator<Item = u16>,
+    screen: Screen,
+) -> Vec<Shape> {
+    let to_light = view.shading.to_light;
+    let shape = |caster: u16| {
+        let caster = usize::from(caster);
+        match view.spheres.get(caster) {
+            Some(sphere) => {
+                let before = HalfSpace {
+                    normal: -to_light.vector,
+                    at: sphere.center,
+                    closed: false,
+                    border: None,
+                };
+                let ellipse = Ellipse::of(
+                    (sphere.center, sphere.radius),
+                    (to_light.vector, to_light.squared_length),
+                    sheet,
+                    screen,
+                );
+                Shape::new(
+                    vec![HalfPlane::of(&before, sheet, screen)],
+                    Some(ellipse),
+                    screen,
+                )
+            }
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let ahead = t.solid.ahead(&t.from_light);
+                let planes = ahead.map(|half_space| HalfPlane::of(&half_space, sheet, screen));
+                Shape::new(planes.collect(), None, screen)
+            }
+        }
+    };
+    casters.map(shape).collect()
+}
+
+/// What may shade the pixels of a sphere.
+fn casters_on(ball: &Ball, index: usize, view: &View<Bounded>, casters: &[u16]) -> Vec<Caster> {
+    let to_light = view.shading.to_light;
+    let own = view.spheres[index].support;
+    casters
+        .iter()
+        .filter_map(|&caster| {
+            let caster = usize::from(caster);
+            match view.spheres.get(caster) {
+                // A ray leaves its own sphere, also where that is listed twice.
+                Some(sphere) if sphere.support == own => None,
+                Some(sphere) => {
+                    let (moment, before) = ball.around(sphere.center, &to_light);
+                    let reach = to_light.squared_length * sphere.radius.squared();
+                    Some(Caster::ball(before, moment, (reach.value(), reach.error())))
+                }
+                None => {
+                    let t = &view.tetrahedra[caster - view.spheres.len()];
+                    let ahead = t.solid.ahead(&t.from_light);
+                    Some(Caster::Cell(
+                        ahead.map(|half_space| ball.inside(&half_space)).collect(),
+                    ))
+                }
+            }
+        })
+        .collect()
+}
