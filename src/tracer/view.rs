@@ -96,7 +96,7 @@ impl<R: Real> Frame<R> {
     }
 
     /// The way to the light, reflected for the mirror.
-    fn to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
+    fn way_to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
         let direction = scene.light().scaled_direction();
         let turned = -self.turn(direction);
         Direction {
@@ -116,7 +116,7 @@ impl<R: Real> Frame<R> {
         let crossings = (0..scene.tetrahedra().len())
             .map(|index| self.tetrahedron(scene, index, mirror).crossing(&looking()));
         let eye = looking::<R>().vector;
-        let to_light = self.to_light(scene, mirrored).vector;
+        let to_light = self.way_to_light(scene, mirrored).vector;
         let across = eye.cross(to_light);
         let beside = [across.x, across.y, across.z];
         let parallel = beside.map(|x| x.sign().map(Ordering::is_eq));
@@ -216,7 +216,7 @@ impl<R: Real> View<R> {
         mirrored: bool,
     ) -> View<R> {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
-        let to_light = frame.to_light(scene, mirrored);
+        let to_light = frame.way_to_light(scene, mirrored);
         let spheres =
             scene
                 .spheres()

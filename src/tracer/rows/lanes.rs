@@ -126,10 +126,10 @@ fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
         let mut open = !(in_shadow | light.simd_gt(splat(error)));
         for caster in shade.casters {
             let (inside, outside) = shadowed(simd, caster, m, q, s);
-            in_shadow = in_shadow | inside;
-            open = open | !(inside | outside);
+            in_shadow |= inside;
+            open |= !(inside | outside);
         }
-        known = known & (in_shadow | !open);
+        known &= in_shadow | !open;
     } else {
         in_shadow = S::mask64s::splat(simd, false);
     }
@@ -164,7 +164,7 @@ fn power<S: Simd>(simd: S, x: S::f64s, exponent: u32) -> S::f64s {
     let (mut square, mut bits) = (x, exponent);
     loop {
         if bits & 1 == 1 {
-            power = power * square;
+            power *= square;
         }
         bits >>= 1;
         if bits == 0 {
@@ -187,8 +187,8 @@ fn shadowed<S: Simd>(
     let mut inside = S::mask64s::splat(simd, true);
     let mut outside = S::mask64s::splat(simd, false);
     let mut within = |depth: S::f64s, error: f64| {
-        inside = inside & depth.simd_gt(splat(error));
-        outside = outside | depth.simd_lt(splat(-error));
+        inside &= depth.simd_gt(splat(error));
+        outside |= depth.simd_lt(splat(-error));
     };
     match caster {
         Caster::Cell(forms) => {
