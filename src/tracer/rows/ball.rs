@@ -7,7 +7,7 @@
 //! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at the hit are linear forms in q, m
 //! and s, and per pixel there are a root, a few products and sums.
 
-use super::shape::{Ellipse, MORE, Screen, U};
+use super::shape::{Ellipse, MORE, Off, U};
 use crate::tracer::line::Direction;
 use crate::tracer::number::{Bounded, Real};
 use crate::tracer::shading::Shading;
@@ -15,14 +15,21 @@ use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
-/// constant + across · q + off · m + out · s, and a bound on its error in f64.
+/// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have a small s: those with
+/// s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
+pub(super) const ZONES: usize = 2;
+
+/// What R is divided by for the least s of each zone.
+const DEPTHS: [f64; ZONES] = [8.0, 128.0];
+
+/// constant + across · q + off · m + out · s, and in each zone a bound on its error in f64.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
     constant: f64,
     pub(super) across: f64,
     off: f64,
     pub(super) out: f64,
-    pub(super) error: f64,
+    pub(super) errors: [f64; ZONES],
     /// A bound on its magnitude.
     pub(super) magnitude: f64,
 }
@@ -38,7 +45,9 @@ impl Form {
 #[derive(Clone, Copy)]
 struct Known {
     radius: f64,
-    errors: [f64; 3],
+    across: f64,
+    off: f64,
+    out: [f64; ZONES],
 }
 
 impl Known {
@@ -51,21 +60,23 @@ impl Known {
             (ten * vector.y - three * vector.z) / root,
             (three * vector.y + ten * vector.z) / root,
         ];
-        let terms = factors.iter().zip(self.errors);
-        // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
-        let carried: f64 = terms
-            .map(|(factor, error)| {
-                factor.error() * (self.radius + error) + factor.value().abs() * error
-            })
-            .sum();
         let magnitudes: f64 = factors.iter().map(|f| f.value().abs() * self.radius).sum();
-        let error = constant.error() + carried + 8.0 * U * (constant.value().abs() + magnitudes);
+        let errors = self.out.map(|out| {
+            // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
+            let terms = factors.iter().zip([self.across, self.off, out]);
+            let carried: f64 = terms
+                .map(|(factor, error)| {
+                    factor.error() * (self.radius + error) + factor.value().abs() * error
+                })
+                .sum();
+            (constant.error() + carried + 8.0 * U * (constant.value().abs() + magnitudes)) * MORE
+        });
         Form {
             constant: constant.value(),
             across: factors[0].value(),
             off: factors[1].value(),
             out: factors[2].value(),
-            error: error * MORE,
+            errors,
             magnitude: (constant.value().abs() + magnitudes) * MORE,
         }
     }
@@ -75,10 +86,9 @@ impl Known {
 pub(super) struct Ball {
     pub(super) center: f64,
     pub(super) squared_radius: f64,
-    /// m at Y = 0, and how it changes with Y.
-    off: (f64, f64),
-    /// Pixels with less s² are left in doubt: there a root multiplies errors.
-    pub(super) least: f64,
+    pub(super) off: Off,
+    /// The least s² of each zone.
+    pub(super) least: [f64; ZONES],
     known: Known,
     at: Vector<Bounded>,
     /// n·l, with n and l of length 1.
@@ -88,17 +98,18 @@ pub(super) struct Ball {
     pub(super) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(super) highlight: f64,
-    /// For each channel: ambient, diffuse, specular, and a bound on the error of their sum.
+    /// Red, green and blue.
     pub(super) channels: [Channel; 3],
 }
 
-/// ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ: a colour's channel, its coefficients multiplied out.
+/// ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ: a channel of the colour, its coefficients multiplied out.
 #[derive(Clone, Copy)]
 pub(super) struct Channel {
     pub(super) ambient: f64,
     pub(super) diffuse: f64,
     pub(super) specular: f64,
-    pub(super) error: f64,
+    /// In each zone, a bound on the error without and with the highlight.
+    pub(super) errors: [[f64; 2]; ZONES],
 }
 
 impl Ball {
@@ -108,54 +119,60 @@ impl Ball {
         outline: &Ellipse,
         shading: &Shading<Bounded>,
         color: Vector<Bounded>,
-        screen: Screen,
     ) -> Ball {
         let radius = sphere.radius.at_most() * MORE;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
-        let across = (sphere.center.x.error() + U * (radius + screen.reach * U)) * MORE;
+        let across = (sphere.center.x.error() * (1.0 + U) + U * radius) * MORE;
         // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference round.
         let squared =
             outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
-        // |√A − √a| ≤ |A − a|/√a, here with √a ≥ R/128.
-        let out = (squared * MORE / (radius / 128.0) + U * radius) * MORE;
+        // |√A − √a| ≤ |A − a|/√a, and the root rounds.
+        let out = DEPTHS.map(|depth| (squared * depth / radius + U * radius) * MORE);
         let known = Known {
             radius,
-            errors: [across, outline.off_error, out],
+            across,
+            off: outline.off_error,
+            out,
         };
         let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
         let zero = Bounded::exact(0.0);
         let light = known.form(zero, unit(shading.to_light_unit()));
         let halfway = shading.halfway().map(|h| known.form(zero, unit(h)));
         let exponent = shading.exponent();
-        // x ≤ 1 + ε: |xⁿ − yⁿ| ≤ n |x − y| (1 + ε)ⁿ⁻¹, and n − 1 products round. Small values are left out, or put too high: 2⁻⁵⁸.
         let n = f64::from(exponent);
-        let power_error = halfway.map_or(0.0, |form| {
-            let slope = n * (form.error + U);
+        // The error of (n·h)ⁿ. With x, y ≤ 1 + ε it is |xⁿ − yⁿ| ≤ n |x − y| (1 + ε)ⁿ⁻¹, and n − 1 products round. Where it is
+        // small it is left out, or put at 2⁻⁵⁹.
+        let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
+        let power = |zone: usize| {
+            let slope = halfway.map_or(0.0, |form| n * (form.errors[zone] + U));
             let tame = slope < 1.0 / 64.0;
             if tame {
-                slope * 1.05 + 4.0 * f64::powi(2.0, -59)
+                [tiny, slope * 1.05 + tiny]
             } else {
-                f64::INFINITY
+                [f64::INFINITY; 2]
             }
-        });
-        let channel = |color: Bounded, [ambient, diffuse, specular]: [Bounded; 3]| {
-            let parts = [ambient * color, diffuse * color, specular * color];
+        };
+        let channel = |color: Bounded, coefficients: [Bounded; 3]| {
+            let parts = coefficients.map(|coefficient| coefficient * color);
             let [a, d, s] = parts;
-            let carried = a.error()
-                + d.error() * (1.0 + light.error)
-                + d.value().abs() * light.error
-                + if s.is_zero() {
+            let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
+            let error = |light: f64, power: f64| {
+                let specular = if s.is_zero() {
                     0.0
                 } else {
-                    s.error() * (1.0 + power_error) + s.value().abs() * power_error
+                    s.error() * (1.0 + power) + s.value().abs() * power
                 };
-            let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
-            // |n·l| ≤ 1, but for errors; two products and two sums.
+                // |n·l| ≤ 1, but for its error; two products and two sums round.
+                let diffuse = d.error() * (1.0 + light) + d.value().abs() * light;
+                (a.error() + diffuse + specular + 8.0 * U * magnitudes) * MORE
+            };
             Channel {
                 ambient: a.value(),
                 diffuse: d.value(),
                 specular: s.value(),
-                error: (carried + 8.0 * U * magnitudes) * MORE,
+                errors: std::array::from_fn(|zone| {
+                    power(zone).map(|power| error(light.errors[zone], power))
+                }),
             }
         };
         let [red, green, blue] = shading.coefficients();
@@ -163,7 +180,7 @@ impl Ball {
             center: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
             off: outline.off,
-            least: (radius / 128.0) * (radius / 128.0) * MORE,
+            least: DEPTHS.map(|depth| (radius / depth) * (radius / depth) * MORE),
             known,
             at: sphere.center,
             light,
@@ -177,11 +194,6 @@ impl Ball {
                 channel(color.z, blue),
             ],
         }
-    }
-
-    /// m of the row at Y.
-    pub(super) fn off(&self, y: f64) -> f64 {
-        self.off.0 + self.off.1 * y
     }
 
     /// How far the hit is inside a half-space, in units of its normal's length.

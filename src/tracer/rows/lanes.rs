@@ -3,9 +3,10 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::ball::{Ball, Form};
+use super::ball::{Ball, Form, ZONES};
 use super::shape::{MORE, Screen, U};
 use crate::tracer::decision::Decision;
+use crate::tracer::number::Bounded;
 
 /// What may stand between a pixel of a sphere and the light.
 pub(super) enum Caster {
@@ -14,10 +15,11 @@ pub(super) enum Caster {
     /// Any point that is before it, and from which the way to the light passes its centre near enough.
     Ball {
         before: Form,
-        /// The components of a vector, of which the squared length is at most `reach`, give or take `error`.
+        /// The components of a vector, of which the squared length is at most `reach`; in each zone a bound on the error of the
+        /// difference.
         moment: [Form; 3],
         reach: f64,
-        error: f64,
+        errors: [f64; ZONES],
     },
 }
 
@@ -44,7 +46,13 @@ pub(super) struct Run<'r> {
     pub(super) doubts: &'r mut Vec<u32>,
 }
 
-/// As many pixels as f64 lanes: their samples' bounds, and bit by bit who is in shadow and who is known.
+/// X of neighbouring columns, from the first.
+const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
+
+// No closures below: the instructions of a level are only there for what is inlined into its dispatch, which closures
+// given to other functions are not.
+
+/// As many pixels as f64 lanes: bounds on their samples, and bit by bit who is in shadow and who is known.
 struct Lit<V> {
     lower: [V; 3],
     upper: [V; 3],
@@ -57,34 +65,34 @@ struct Lit<V> {
 pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
     let width = S::f32s::LEN;
     let half = S::f64s::LEN;
-    let m = shade.ball.off(run.y);
+    let m = shade.ball.off.at(run.y);
     let count = run.samples.len() / 3;
+    let zero = S::f32s::splat(simd, 0.0);
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
         let low = lit(simd, shade, m, x);
         let high = lit(simd, shade, m, x + 3.0 * half as f64);
         let in_shadow = low.in_shadow | high.in_shadow << half;
-        let dark = S::mask32s::from_bitmask(simd, in_shadow);
         let mut known = low.known | high.known << half;
-        let channels: [S::f32s; 3] = std::array::from_fn(|i| {
+        let dark = S::mask32s::from_bitmask(simd, in_shadow);
+        let mut channels = [zero; 3];
+        for i in 0..3 {
             let lower = low.lower[i].narrow(high.lower[i]);
             let upper = low.upper[i].narrow(high.upper[i]);
             known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
             // + 0 turns −0 into +0.
-            dark.select(
-                S::f32s::splat(simd, shade.color_in_shadow[i]),
-                upper + S::f32s::splat(simd, 0.0),
-            )
-        });
+            let shadow = S::f32s::splat(simd, shade.color_in_shadow[i]);
+            channels[i] = dark.select(shadow, upper + zero);
+        }
         let here = width.min(count - first);
         let samples = &mut run.samples[3 * first..3 * (first + here)];
-        let [red, green, blue] = channels.each_ref().map(|channel| channel.as_slice());
-        for (i, pixel) in samples.chunks_exact_mut(3).enumerate() {
-            pixel[0] = red[i];
-            pixel[1] = green[i];
-            pixel[2] = blue[i];
-        }
+        interleave(
+            samples,
+            channels[0].as_slice(),
+            channels[1].as_slice(),
+            channels[2].as_slice(),
+        );
         if let Some((decisions, [light, shadow])) = &mut run.decisions {
             for (i, decision) in decisions[first..first + here].iter_mut().enumerate() {
                 *decision = if in_shadow >> i & 1 == 1 {
@@ -104,54 +112,72 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
     }
 }
 
+/// Red, green and blue, pixel by pixel.
+#[inline(always)]
+fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: &[f32]) {
+    let channels = red.iter().zip(green).zip(blue);
+    for (pixel, ((&red, &green), &blue)) in samples.chunks_exact_mut(3).zip(channels) {
+        pixel[0] = red;
+        pixel[1] = green;
+        pixel[2] = blue;
+    }
+}
+
 /// A linear form along a row.
 #[inline(always)]
 fn value<S: Simd>(simd: S, form: &Form, m: f64, q: S::f64s, s: S::f64s) -> S::f64s {
-    let constant = S::f64s::splat(simd, form.of_row(m));
-    constant + q * form.across + s * form.out
+    S::f64s::splat(simd, form.of_row(m)) + q * form.across + s * form.out
 }
 
 #[inline(always)]
 fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
-    let splat = |value: f64| S::f64s::splat(simd, value);
     let ball: &Ball = shade.ball;
-    let q = S::f64s::from_fn(simd, |i| 3.0 * i as f64) + splat(x) - splat(ball.center);
-    let squared = splat(ball.squared_radius - m * m) - q * q;
-    let mut known = squared.simd_ge(splat(ball.least));
+    let zero = S::f64s::splat(simd, 0.0);
+    let places = S::f64s::from_slice(simd, &PLACES[..S::f64s::LEN]);
+    let q = places + (x) - ball.center;
+    let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
+    let zone = usize::from(squared.simd_lt(ball.least[0]).any_true());
+    let mut known = squared.simd_ge(ball.least[1]);
     let s = squared.sqrt();
-    let light = value(simd, &ball.light, m, q, s);
-    let error = ball.light.error;
-    let mut in_shadow = light.simd_lt(splat(-error));
+    let mut light = value(simd, &ball.light, m, q, s);
+    let mut in_shadow = S::mask64s::splat(simd, false);
     if shade.shadows {
-        let mut open = !(in_shadow | light.simd_gt(splat(error)));
+        let error = ball.light.errors[zone];
+        in_shadow = light.simd_lt(-error);
+        let mut settled = in_shadow | light.simd_gt(error);
         for caster in shade.casters {
-            let (inside, outside) = shadowed(simd, caster, m, q, s);
+            let (inside, outside) = shadowed(simd, caster, zone, m, q, s);
             in_shadow |= inside;
-            open |= !(inside | outside);
+            settled &= inside | outside;
         }
-        known &= in_shadow | !open;
-    } else {
-        in_shadow = S::mask64s::splat(simd, false);
+        known &= in_shadow | settled;
     }
-    let light = light.max(splat(0.0));
-    let power = ball.halfway.as_ref().and_then(|form| {
+    light = light.max(zero);
+    let mut samples = [zero; 3];
+    for i in 0..3 {
+        let channel = &ball.channels[i];
+        samples[i] = light * channel.diffuse + channel.ambient;
+    }
+    let mut highlight = 0;
+    if let Some(form) = &ball.halfway {
         let x = value(simd, form, m, q, s);
-        let threshold = splat(ball.highlight);
-        x.simd_gt(threshold)
-            .any_true()
-            .then(|| power(simd, x.max(threshold), ball.exponent))
-    });
-    let samples = ball.channels.map(|channel| {
-        let sum = splat(channel.ambient) + light * channel.diffuse;
-        match power {
-            Some(power) => sum + power * channel.specular,
-            None => sum,
+        if x.simd_gt(ball.highlight).any_true() {
+            highlight = 1;
+            let power = power(simd, x.max(ball.highlight), ball.exponent);
+            for i in 0..3 {
+                samples[i] += power * ball.channels[i].specular;
+            }
         }
-    });
-    let errors = ball.channels.map(|channel| splat(channel.error));
+    }
+    let (mut lower, mut upper) = (samples, samples);
+    for i in 0..3 {
+        let error = ball.channels[i].errors[zone][highlight];
+        lower[i] -= error;
+        upper[i] += error;
+    }
     Lit {
-        lower: std::array::from_fn(|i| samples[i] - errors[i]),
-        upper: std::array::from_fn(|i| samples[i] + errors[i]),
+        lower,
+        upper,
         in_shadow: in_shadow.to_bitmask(),
         known: known.to_bitmask(),
     }
@@ -170,7 +196,7 @@ fn power<S: Simd>(simd: S, x: S::f64s, exponent: u32) -> S::f64s {
         if bits == 0 {
             return power;
         }
-        square = square * square;
+        square *= square;
     }
 }
 
@@ -179,54 +205,61 @@ fn power<S: Simd>(simd: S, x: S::f64s, exponent: u32) -> S::f64s {
 fn shadowed<S: Simd>(
     simd: S,
     caster: &Caster,
+    zone: usize,
     m: f64,
     q: S::f64s,
     s: S::f64s,
 ) -> (S::mask64s, S::mask64s) {
-    let splat = |value: f64| S::f64s::splat(simd, value);
-    let mut inside = S::mask64s::splat(simd, true);
-    let mut outside = S::mask64s::splat(simd, false);
-    let mut within = |depth: S::f64s, error: f64| {
-        inside &= depth.simd_gt(splat(error));
-        outside |= depth.simd_lt(splat(-error));
-    };
     match caster {
         Caster::Cell(forms) => {
+            let mut inside = S::mask64s::splat(simd, true);
+            let mut outside = S::mask64s::splat(simd, false);
             for form in forms {
-                within(value(simd, form, m, q, s), form.error);
+                let depth = value(simd, form, m, q, s);
+                inside &= depth.simd_gt(form.errors[zone]);
+                outside |= depth.simd_lt(-form.errors[zone]);
             }
+            (inside, outside)
         }
         Caster::Ball {
             before,
             moment,
             reach,
-            error,
+            errors,
         } => {
-            within(value(simd, before, m, q, s), before.error);
-            let [x, y, z] = moment.each_ref().map(|form| value(simd, form, m, q, s));
-            within(splat(*reach) - (x * x + y * y + z * z), *error);
+            let ahead = value(simd, before, m, q, s);
+            let x = value(simd, &moment[0], m, q, s);
+            let y = value(simd, &moment[1], m, q, s);
+            let z = value(simd, &moment[2], m, q, s);
+            let depth = S::f64s::splat(simd, *reach) - (x * x + y * y + z * z);
+            (
+                ahead.simd_gt(before.errors[zone]) & depth.simd_gt(errors[zone]),
+                ahead.simd_lt(-before.errors[zone]) | depth.simd_lt(-errors[zone]),
+            )
         }
     }
-    (inside, outside)
 }
 
 impl Caster {
     /// A sphere, `reach` being |l|² R².
-    pub(super) fn ball(before: Form, moment: [Form; 3], reach: (f64, f64)) -> Caster {
-        // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six roundings, each less than u of all magnitudes.
-        let carried: f64 = moment
-            .iter()
-            .map(|form| (2.0 * form.magnitude + form.error) * form.error)
-            .sum();
+    pub(super) fn ball(before: Form, moment: [Form; 3], reach: Bounded) -> Caster {
         let magnitudes: f64 = moment
             .iter()
             .map(|form| form.magnitude * form.magnitude)
             .sum();
+        let errors = std::array::from_fn(|zone| {
+            // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six operations round, each by less than u of all magnitudes.
+            let carried: f64 = moment
+                .iter()
+                .map(|form| (2.0 * form.magnitude + form.errors[zone]) * form.errors[zone])
+                .sum();
+            (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE
+        });
         Caster::Ball {
             before,
             moment,
-            reach: reach.0,
-            error: (reach.1 + carried + 8.0 * U * (magnitudes + reach.0)) * MORE,
+            reach: reach.value(),
+            errors,
         }
     }
 }

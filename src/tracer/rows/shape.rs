@@ -236,8 +236,7 @@ impl HalfPlane {
 pub(super) struct Ellipse {
     /// The middle of the chord at Y = 0, and how it moves with Y.
     center: (f64, f64),
-    /// m at Y = 0, and how it changes with Y.
-    pub(super) off: (f64, f64),
+    pub(super) off: Off,
     pub(super) squared_radius: f64,
     /// Beyond this |m| no row is crossed.
     limit: f64,
@@ -248,6 +247,20 @@ pub(super) struct Ellipse {
     slack: f64,
 }
 
+/// m as a function of Y: `slope` · (Y − `zero`).
+#[derive(Clone, Copy)]
+pub(super) struct Off {
+    slope: f64,
+    zero: f64,
+}
+
+impl Off {
+    /// m of the row at Y.
+    pub(super) fn at(self, y: f64) -> f64 {
+        self.slope * (y - self.zero)
+    }
+}
+
 impl Ellipse {
     fn new(
         center: (Bounded, Bounded),
@@ -256,14 +269,26 @@ impl Ellipse {
         screen: Screen,
     ) -> Ellipse {
         let reach = screen.reach;
+        let (zero, slope) = (-(off.0 / off.1), off.1);
         // A linear function of Y in f64: its coefficients' errors, and two roundings.
         let error = |(a, b): (Bounded, Bounded)| {
             (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
                 * MORE
         };
-        let off_error = error(off);
         let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
-        let limit = (radius + off_error) * MORE;
+        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one rounding. The product rounds too.
+        let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
+        let shift = zero.error() + U * away;
+        let off_error =
+            (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
+        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the error says, and farther away
+        // because the slope is known to a quarter. Otherwise nothing is known.
+        let known = slope.error() < slope.value().abs() / 4.0;
+        let limit = if known {
+            (radius + off_error) * MORE
+        } else {
+            f64::INFINITY
+        };
         // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
         let chord_error = (squared_radius.error()
             + (2.0 * limit + off_error) * off_error
@@ -275,7 +300,10 @@ impl Ellipse {
         let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
         Ellipse {
             center: (center.0.value(), center.1.value()),
-            off: (off.0.value(), off.1.value()),
+            off: Off {
+                slope: slope.value(),
+                zero: zero.value(),
+            },
             squared_radius: squared_radius.value(),
             limit,
             off_error,
@@ -321,14 +349,9 @@ impl Ellipse {
         )
     }
 
-    /// m of the row at Y.
-    pub(super) fn off(&self, y: f64) -> f64 {
-        self.off.0 + self.off.1 * y
-    }
-
     /// Its columns of the row at Y.
     pub(super) fn cross(&self, y: f64, screen: Screen) -> Span {
-        let m = self.off(y);
+        let m = self.off.at(y);
         let beyond = m.abs() > self.limit;
         if beyond {
             return Span::NONE;
@@ -374,8 +397,7 @@ impl Ellipse {
 
     /// The rows that it can cross.
     fn rows(&self, screen: Screen) -> (u32, u32) {
-        let (a, b) = self.off;
-        let ends = [-self.limit, self.limit].map(|m| (m - a) / b);
+        let ends = [-self.limit, self.limit].map(|m| self.off.zero + m / self.off.slope);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         // A row more on either side is far more than rounding takes.
         let place = |y: f64| screen.half + y / 3.0;

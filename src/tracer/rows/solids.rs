@@ -112,7 +112,7 @@ impl Solids {
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
-                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, screen);
+                    let ball = Ball::new(sphere, &ellipse, &view.shading, own);
                     let casters = if all.shadows {
                         casters_on(&ball, index, view, &facts.casters[index])
                     } else {
@@ -240,7 +240,7 @@ impl Solid {
                 let Some(outline) = self.ellipse() else {
                     return (f64::NEG_INFINITY, f64::INFINITY);
                 };
-                let m = outline.off(y);
+                let m = outline.off.at(y);
                 let squared = |q: f64| (outline.squared_radius - m * m) - q * q;
                 let q = ends.map(|x| x - center);
                 let farthest = q[0].abs().max(q[1].abs());
@@ -402,7 +402,7 @@ fn casters_on(ball: &Ball, index: usize, view: &View<Bounded>, casters: &[u16]) 
                 Some(sphere) => {
                     let (moment, before) = ball.around(sphere.center, &to_light);
                     let reach = to_light.squared_length * sphere.radius.squared();
-                    Some(Caster::ball(before, moment, (reach.value(), reach.error())))
+                    Some(Caster::ball(before, moment, reach))
                 }
                 None => {
                     let t = &view.tetrahedra[caster - view.spheres.len()];
