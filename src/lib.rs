@@ -51,6 +51,7 @@
 
 pub mod camera;
 pub mod image;
+mod number;
 pub mod scene;
 pub mod screen;
 mod stage;

@@ -9,23 +9,20 @@ mod extent;
 mod ladder;
 mod line;
 mod listing;
-mod number;
+
 mod palette;
 mod pixel;
 #[cfg(test)]
 mod rational;
 mod rows;
 mod shading;
+mod simd;
 mod sphere;
 mod surface;
 mod tetrahedron;
 mod vector;
 mod view;
 
-use std::sync::atomic::AtomicU64;
-use std::sync::atomic::Ordering::Relaxed;
-
-use fearless_simd::Level;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -34,6 +31,7 @@ pub use decision::{Decision, Seen};
 use ladder::{Ladder, Pixels, Plain, Rung};
 use listing::Listing;
 use rows::{Rows, Scratch};
+pub use simd::Simd;
 
 /// How numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -121,14 +119,32 @@ pub struct InDoubt {
     pub arbitrary: u64,
 }
 
+impl InDoubt {
+    fn count(&mut self, rung: Rung) {
+        match rung {
+            Rung::Double => {}
+            Rung::DoubleDouble => self.double_double += 1,
+            Rung::Arbitrary => self.arbitrary += 1,
+        }
+    }
+
+    fn and(self, other: InDoubt) -> InDoubt {
+        InDoubt {
+            double_double: self.double_double + other.double_double,
+            arbitrary: self.arbitrary + other.arbitrary,
+        }
+    }
+}
+
 /// Rows are handed to threads in bands of so many.
 const BAND: usize = 16;
 
 /// Traces pictures: made once, used for any number of frames.
 pub struct Tracer {
     kernel: Kernel,
-    pool: ThreadPool,
-    level: Level,
+    /// `None` for one thread, which is the caller's.
+    pool: Option<ThreadPool>,
+    simd: Simd,
     in_doubt: InDoubt,
 }
 
@@ -138,14 +154,28 @@ impl Tracer {
     /// # Errors
     /// [`TraceError::Threads`] where the system refuses the threads.
     pub fn new(kernel: Kernel, threads: usize) -> Result<Tracer, TraceError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|source| TraceError::Threads { threads, source })?;
+        let pool = if threads == 1 {
+            None
+        } else {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            Some(pool.map_err(|source| TraceError::Threads { threads, source })?)
+        };
         Ok(Tracer {
             kernel,
             pool,
-            level: Level::new(),
+            simd: Simd::best(),
             in_doubt: InDoubt::default(),
         })
+    }
+
+    /// The same tracer, confined to these vector instructions. The kernels that go pixel by pixel use none.
+    pub fn with_simd(self, simd: Simd) -> Tracer {
+        Tracer { simd, ..self }
+    }
+
+    /// The vector instructions that it uses: the widest, unless it was confined.
+    pub fn simd(&self) -> Simd {
+        self.simd
     }
 
     /// The kernel it was made with.
@@ -250,7 +280,7 @@ impl Tracer {
                 let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
                 match ladder.bounded().filter(|_| stage != Stage::Image) {
                     Some(picture) => {
-                        self.trace_rows(&Rows::new(picture, &ladder, self.level), image, decisions)
+                        self.trace_rows(&Rows::new(picture, &ladder, self.simd.0), image, decisions)
                     }
                     None => self.trace_pixels(&ladder, image, decisions),
                 }
@@ -279,34 +309,13 @@ impl Tracer {
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
     ) -> InDoubt {
-        let (double_double, arbitrary) = (AtomicU64::new(0), AtomicU64::new(0));
-        let width = image.size() as usize;
-        let trace_band = |band: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
-            let mut scratch = Scratch::default();
-            let mut decisions = decisions.map(|decisions| decisions.chunks_exact_mut(width));
-            for (row, samples) in samples.chunks_exact_mut(3 * width).enumerate() {
-                let decisions = decisions.as_mut().and_then(Iterator::next);
-                let number = (band * BAND + row) as u32;
-                let [by_double_double, by_arbitrary] =
-                    rows.trace(number, samples, decisions, &mut scratch);
-                double_double.fetch_add(by_double_double, Relaxed);
-                arbitrary.fetch_add(by_arbitrary, Relaxed);
-            }
-        };
-        let bands = image
-            .samples_mut()
-            .par_chunks_mut(3 * width * BAND)
-            .enumerate();
-        self.pool.install(|| match decisions {
-            Some(decisions) => bands.zip(decisions.par_chunks_mut(width * BAND)).for_each(
-                |((band, samples), decisions)| trace_band(band, samples, Some(decisions)),
-            ),
-            None => bands.for_each(|(band, samples)| trace_band(band, samples, None)),
-        });
-        InDoubt {
-            double_double: double_double.into_inner(),
-            arbitrary: arbitrary.into_inner(),
-        }
+        let scratch = Scratch::default;
+        self.each_row(
+            image,
+            decisions,
+            scratch,
+            |row, samples, decisions, scratch| rows.trace(row, samples, decisions, scratch),
+        )
     }
 
     fn trace_pixels(
@@ -315,36 +324,58 @@ impl Tracer {
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
     ) -> InDoubt {
-        let (double_double, arbitrary) = (AtomicU64::new(0), AtomicU64::new(0));
-        let trace_row = |row: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
-            let mut decisions = decisions.into_iter().flatten();
-            for (column, sample) in samples.chunks_exact_mut(3).enumerate() {
-                let ((decision, color), rung) = pixels.pixel(column as u32, row as u32);
-                match rung {
-                    Rung::Double => {}
-                    Rung::DoubleDouble => _ = double_double.fetch_add(1, Relaxed),
-                    Rung::Arbitrary => _ = arbitrary.fetch_add(1, Relaxed),
+        self.each_row(
+            image,
+            decisions,
+            || (),
+            |row, samples, decisions, ()| {
+                let mut in_doubt = InDoubt::default();
+                let mut decisions = decisions.into_iter().flatten();
+                for (column, sample) in samples.chunks_exact_mut(3).enumerate() {
+                    let ((decision, color), rung) = pixels.pixel(column as u32, row);
+                    in_doubt.count(rung);
+                    sample.copy_from_slice(&color);
+                    if let Some(place) = decisions.next() {
+                        *place = decision;
+                    }
                 }
-                sample.copy_from_slice(&color);
-                if let Some(place) = decisions.next() {
-                    *place = decision;
-                }
-            }
-        };
+                in_doubt
+            },
+        )
+    }
+
+    /// Traces every row, on all threads: `trace` gets its number, its samples, and the place for its decisions if they are asked for.
+    fn each_row<Scratch>(
+        &self,
+        image: &mut Image,
+        decisions: Option<&mut [Decision]>,
+        scratch: impl Fn() -> Scratch + Sync,
+        trace: impl Fn(u32, &mut [f32], Option<&mut [Decision]>, &mut Scratch) -> InDoubt + Sync,
+    ) -> InDoubt {
         let width = image.size() as usize;
-        let rows = image
-            .samples_mut()
-            .par_chunks_exact_mut(3 * width)
-            .enumerate();
-        self.pool.install(|| match decisions {
-            Some(decisions) => rows
-                .zip(decisions.par_chunks_exact_mut(width))
-                .for_each(|((row, samples), decisions)| trace_row(row, samples, Some(decisions))),
-            None => rows.for_each(|(row, samples)| trace_row(row, samples, None)),
-        });
-        InDoubt {
-            double_double: double_double.into_inner(),
-            arbitrary: arbitrary.into_inner(),
-        }
+        let band = |first: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
+            let mut scratch = scratch();
+            let mut decisions = decisions.map(|decisions| decisions.chunks_exact_mut(width));
+            let rows = samples.chunks_exact_mut(3 * width).enumerate();
+            rows.map(|(row, samples)| {
+                let decisions = decisions.as_mut().and_then(Iterator::next);
+                trace((first + row) as u32, samples, decisions, &mut scratch)
+            })
+            .fold(InDoubt::default(), InDoubt::and)
+        };
+        let samples = image.samples_mut();
+        let Some(pool) = &self.pool else {
+            return band(0, samples, decisions);
+        };
+        let bands = samples.par_chunks_mut(3 * width * BAND).enumerate();
+        pool.install(|| match decisions {
+            Some(decisions) => bands
+                .zip(decisions.par_chunks_mut(width * BAND))
+                .map(|((number, samples), decisions)| band(number * BAND, samples, Some(decisions)))
+                .reduce(InDoubt::default, InDoubt::and),
+            None => bands
+                .map(|(number, samples)| band(number * BAND, samples, None))
+                .reduce(InDoubt::default, InDoubt::and),
+        })
     }
 }

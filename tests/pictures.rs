@@ -6,7 +6,8 @@
     reason = "a test stops at the first surprise"
 )]
 
-use firsthit::camera::frame_angle;
+use firsthit::camera::{ROUND, frame_angle};
+use firsthit::tracer::{Decision, Simd};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 const SIZE: u32 = 125;
@@ -86,4 +87,54 @@ fn any_number_of_threads() {
             );
         }
     }
+}
+
+/// The samples and decisions of a frame, at a size at which every border meets pixels of the hard scenes.
+fn with_simd(simd: Simd, scene: &Scene, stage: Stage, alpha: f64) -> (u64, Vec<Decision>) {
+    let mut image = Image::new(96).unwrap();
+    let mut tracer = Tracer::new(Kernel::Exact, 1).unwrap().with_simd(simd);
+    let decisions = tracer
+        .trace_with_decisions(scene, stage, alpha, &mut image)
+        .unwrap();
+    (checksum(&image), decisions)
+}
+
+#[test]
+fn any_vector_instructions() {
+    let levels = Simd::all();
+    eprintln!("vector instructions here: {levels:?}");
+    let scenes = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes")).unwrap();
+    let scenes = scenes.map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
+    let scenes = scenes.map(|text| Scene::from_toml(&text).unwrap());
+    for scene in scenes.chain([Scene::builtin()]) {
+        for stage in [Stage::Shading, Stage::Reflection] {
+            for alpha in [0.0, 0.9] {
+                let all = levels
+                    .iter()
+                    .map(|&simd| with_simd(simd, &scene, stage, alpha));
+                let all: Vec<_> = all.collect();
+                assert!(
+                    all.windows(2).all(|two| two[0] == two[1]),
+                    "{stage} {alpha}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn few_pixels_of_a_round_are_in_doubt() {
+    let mut tracer = Tracer::new(Kernel::Exact, 0).unwrap();
+    let mut image = Image::new(500).unwrap();
+    let (mut double_double, mut arbitrary) = (0, 0);
+    for frame in 0..ROUND {
+        let alpha = frame_angle(frame);
+        tracer
+            .trace(&Scene::builtin(), Stage::Reflection, alpha, &mut image)
+            .unwrap();
+        double_double += tracer.in_doubt().double_double;
+        arbitrary += tracer.in_doubt().arbitrary;
+    }
+    eprintln!("{double_double} pixels by double-doubles, {arbitrary} by arbitrary precision");
+    assert!(double_double + arbitrary <= 20 && arbitrary <= 2);
 }

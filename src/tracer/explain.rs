@@ -7,11 +7,11 @@ use std::fmt::{self, Write as _};
 
 use super::decision::{Decision, Seen};
 use super::line::{Hit, Line};
-use super::number::Real;
 use super::pixel::Picture;
 use super::vector::Vector;
 use super::view::{Reach, Solids, View};
 use crate::image::display_byte;
+use crate::number::Real;
 use crate::scene::Scene;
 use crate::stage::Stage;
 

@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::number::{Bounded, Real};
 use super::vector::Vector;
 use super::view::{Frame, reflect};
+use crate::number::{Bounded, Real};
 use crate::scene::Scene;
 
 /// The pixels whose eye ray can meet a solid; all others certainly miss it.

@@ -7,10 +7,10 @@ use std::sync::OnceLock;
 use super::decision::Decision;
 use super::extent::Extents;
 use super::line::Normal;
-use super::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::view::{Frame, FrameBearings};
+use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use crate::scene::Scene;
 use crate::stage::Stage;
 

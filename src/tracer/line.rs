@@ -2,8 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::number::Real;
 use super::vector::Vector;
+use crate::number::Real;
 use crate::scene::Support;
 
 /// The points `origin` + t · `direction`; a ray where only t > 0 counts.

@@ -8,10 +8,10 @@ use glam::DVec3;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
 use super::line::{Hit, Line, Normal};
-use super::number::{Real, all, any};
 use super::surface::Surface;
 use super::vector::Vector;
 use super::view::{Frame, FrameBearings, Reach, Solids, View, looking};
+use crate::number::{Real, all, any};
 use crate::scene::Scene;
 use crate::stage::Stage;
 

@@ -13,11 +13,12 @@ mod span;
 
 use fearless_simd::{Level, dispatch};
 
+use super::InDoubt;
 use super::decision::Decision;
-use super::ladder::{Colors, Pixels, Rung};
-use super::number::{Bounded, Real};
+use super::ladder::{Colors, Pixels};
 use super::pixel::{self, Picture};
 use super::vector::Vector;
+use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use lanes::{Run, Shade};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
@@ -86,13 +87,13 @@ impl Crossed {
 
 /// A row that is being written.
 struct Row<'r> {
+    level: Level,
     number: u32,
     /// Y.
     y: f64,
     samples: &'r mut [f32],
     decisions: Option<&'r mut [Decision]>,
-    /// How many pixels double-doubles and arbitrary precision have settled.
-    in_doubt: [u64; 2],
+    in_doubt: InDoubt,
 }
 
 /// Columns, from the first to before the last.
@@ -102,7 +103,8 @@ impl Row<'_> {
     /// The same samples in all columns.
     fn fill(&mut self, (from, to): Columns, decision: Decision, color: [f32; 3]) {
         let columns = from as usize..to as usize;
-        lanes::fill(&mut self.samples[3 * columns.start..3 * columns.end], color);
+        let samples = &mut self.samples[3 * columns.start..3 * columns.end];
+        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
         if let Some(decisions) = &mut self.decisions {
             decisions[columns].fill(decision);
         }
@@ -117,11 +119,7 @@ impl Row<'_> {
             if let Some(decisions) = &mut self.decisions {
                 decisions[place] = decision;
             }
-            match rung {
-                Rung::Double => {}
-                Rung::DoubleDouble => self.in_doubt[0] += 1,
-                Rung::Arbitrary => self.in_doubt[1] += 1,
-            }
+            self.in_doubt.count(rung);
         }
     }
 }
@@ -161,14 +159,15 @@ impl<'a, P: Colors> Rows<'a, P> {
         samples: &mut [f32],
         decisions: Option<&mut [Decision]>,
         scratch: &mut Scratch,
-    ) -> [u64; 2] {
+    ) -> InDoubt {
         let screen = self.screen;
         let mut row = Row {
+            level: self.level,
             number,
             y: screen.place(number),
             samples,
             decisions,
-            in_doubt: [0; 2],
+            in_doubt: InDoubt::default(),
         };
         let mut crossed = std::mem::take(&mut scratch.direct);
         self.direct.cross(number, screen, &mut crossed.spans);

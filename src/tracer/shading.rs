@@ -5,8 +5,8 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::line::{Direction, Normal};
-use super::number::Real;
 use super::vector::Vector;
+use crate::number::Real;
 use crate::scene::Scene;
 
 /// The light and the material as one view sees them.

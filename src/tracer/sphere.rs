@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 use std::iter;
 
 use super::line::{Hit, Line, Normal};
-use super::number::{Real, all};
 use super::vector::Vector;
+use crate::number::{Real, all};
 use crate::scene::Support;
 
 /// A sphere in view space.

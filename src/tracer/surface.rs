@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use super::line::Line;
-use super::number::{Real, all};
 use super::vector::Vector;
+use crate::number::{Real, all};
 use crate::scene::Support;
 
 /// The square in view space: turned about y with the view, but always level.

@@ -10,8 +10,8 @@
 use std::cmp::Ordering;
 
 use super::line::{Direction, Hit, Line, Normal};
-use super::number::{Real, all};
 use super::vector::Vector;
+use crate::number::{Real, all};
 use crate::scene::Support;
 
 /// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from outside, for a tetrahedron

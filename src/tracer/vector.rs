@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-use super::number::Real;
+use crate::number::Real;
 
 /// Three numbers: a point, a direction or a colour.
 #[derive(Clone, Copy, Debug)]

@@ -20,12 +20,12 @@ use glam::DVec3;
 
 use super::extent::Extent;
 use super::line::{Direction, Hit, Line, Normal};
-use super::number::{Real, all, any};
 use super::shading::Shading;
 use super::sphere::Sphere;
 use super::surface::Surface;
 use super::tetrahedron::{Sight, Tetrahedron};
 use super::vector::Vector;
+use crate::number::{Real, all, any};
 use crate::scene::{Scene, Support};
 
 /// How the scene is turned and scaled into view space.

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use super::super::decision::Decision;
 use super::super::extent::Extents;
 use super::super::ladder::{Ladder, Pixels, Rung};
-use super::super::number::{Bounded, DoubleDouble, Expression, Real};
 use super::super::pixel::{Picture, mirrors};
 use super::super::view::{Frame, FrameBearings};
 use super::{Definition, Turn};
+use crate::number::{Bounded, DoubleDouble, Expression, Real};
 use crate::scene::Scene;
 use crate::stage::Stage;
 

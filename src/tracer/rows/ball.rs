@@ -8,8 +8,8 @@
 //! and s, and per pixel there are a root, a few products and sums.
 
 use super::shape::{Ellipse, MORE, Off, U};
+use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
-use crate::tracer::number::{Bounded, Real};
 use crate::tracer::shading::Shading;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;

@@ -5,22 +5,24 @@ use fearless_simd::prelude::*;
 
 use super::ball::{Ball, Form, ZONES};
 use super::shape::{MORE, Screen, U};
+use crate::number::Bounded;
 use crate::tracer::decision::Decision;
-use crate::tracer::number::Bounded;
 
 /// What may stand between a pixel of a sphere and the light.
 pub(super) enum Caster {
     /// Any point within all of these half-spaces is in its shadow.
     Cell(Vec<Form>),
     /// Any point that is before it, and from which the way to the light passes its centre near enough.
-    Ball {
-        before: Form,
-        /// The components of a vector, of which the squared length is at most `reach`; in each zone a bound on the error of the
-        /// difference.
-        moment: [Form; 3],
-        reach: f64,
-        errors: [f64; ZONES],
-    },
+    Ball(Box<Passing>),
+}
+
+/// Points in the shadow of a ball.
+pub(super) struct Passing {
+    before: Form,
+    /// The components of a vector, of which the squared length is at most `reach`; in each zone a bound on the error of the difference.
+    moment: [Form; 3],
+    reach: f64,
+    errors: [f64; ZONES],
 }
 
 /// A sphere to be shaded in a row.
@@ -77,6 +79,7 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
         let mut known = low.known | high.known << half;
         let dark = S::mask32s::from_bitmask(simd, in_shadow);
         let mut channels = [zero; 3];
+        #[expect(clippy::needless_range_loop, reason = "five arrays go together")]
         for i in 0..3 {
             let lower = low.lower[i].narrow(high.lower[i]);
             let upper = low.upper[i].narrow(high.upper[i]);
@@ -154,9 +157,8 @@ fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
     }
     light = light.max(zero);
     let mut samples = [zero; 3];
-    for i in 0..3 {
-        let channel = &ball.channels[i];
-        samples[i] = light * channel.diffuse + channel.ambient;
+    for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
+        *sample = light * channel.diffuse + channel.ambient;
     }
     let mut highlight = 0;
     if let Some(form) = &ball.halfway {
@@ -164,8 +166,8 @@ fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
         if x.simd_gt(ball.highlight).any_true() {
             highlight = 1;
             let power = power(simd, x.max(ball.highlight), ball.exponent);
-            for i in 0..3 {
-                samples[i] += power * ball.channels[i].specular;
+            for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
+                *sample += power * channel.specular;
             }
         }
     }
@@ -221,12 +223,13 @@ fn shadowed<S: Simd>(
             }
             (inside, outside)
         }
-        Caster::Ball {
-            before,
-            moment,
-            reach,
-            errors,
-        } => {
+        Caster::Ball(passing) => {
+            let Passing {
+                before,
+                moment,
+                reach,
+                errors,
+            } = &**passing;
             let ahead = value(simd, before, m, q, s);
             let x = value(simd, &moment[0], m, q, s);
             let y = value(simd, &moment[1], m, q, s);
@@ -255,26 +258,32 @@ impl Caster {
                 .sum();
             (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE
         });
-        Caster::Ball {
+        Caster::Ball(Box::new(Passing {
             before,
             moment,
             reach: reach.value(),
             errors,
-        }
+        }))
     }
 }
 
 /// The same pixel again and again.
-pub(super) fn fill(samples: &mut [f32], [red, green, blue]: [f32; 3]) {
-    /// A whole number of vectors of any width.
-    const PIXELS: usize = 16;
-    let mut pattern = [0.0; 3 * PIXELS];
+#[inline(always)]
+pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], [red, green, blue]: [f32; 3]) {
+    // Three vectors hold a whole number of pixels, of any width.
+    let width = S::f32s::LEN;
+    let mut pattern = [0.0; 3 * 16];
     for pixel in pattern.chunks_exact_mut(3) {
         pixel.copy_from_slice(&[red, green, blue]);
     }
-    let mut blocks = samples.chunks_exact_mut(3 * PIXELS);
+    let first = S::f32s::from_slice(simd, &pattern[..width]);
+    let second = S::f32s::from_slice(simd, &pattern[width..2 * width]);
+    let third = S::f32s::from_slice(simd, &pattern[2 * width..3 * width]);
+    let mut blocks = samples.chunks_exact_mut(3 * width);
     for block in &mut blocks {
-        block.copy_from_slice(&pattern);
+        first.store_slice(&mut block[..width]);
+        second.store_slice(&mut block[width..2 * width]);
+        third.store_slice(&mut block[2 * width..]);
     }
     let rest = blocks.into_remainder();
     let length = rest.len();

@@ -14,8 +14,8 @@
 //! too, each by less than 2⁻⁴⁰, for which [`MORE`] makes up.
 
 use super::span::{HalfLine, Span};
+use crate::number::{Bounded, Real};
 use crate::scene::Support;
-use crate::tracer::number::{Bounded, Real};
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 

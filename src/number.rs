@@ -5,15 +5,16 @@ mod agreement;
 mod bounded;
 mod double_double;
 mod expression;
+mod sine;
 
 use std::cmp::Ordering;
 use std::convert::Infallible;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::camera;
 pub(crate) use bounded::Bounded;
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use expression::Expression;
+pub use sine::sin_cos;
 
 /// A number cannot tell a sign or a rounding: what it knows of the truth allows more than one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +72,7 @@ impl Real for f64 {
     }
 
     fn sin_cos(alpha: f64) -> (f64, f64) {
-        camera::sin_cos(alpha)
+        sin_cos(alpha)
     }
 
     fn sqrt(self) -> f64 {
@@ -109,7 +110,7 @@ impl Real for f32 {
     }
 
     fn sin_cos(alpha: f64) -> (f32, f32) {
-        let (sin, cos) = camera::sin_cos(alpha);
+        let (sin, cos) = sin_cos(alpha);
         (sin as f32, cos as f32)
     }
 

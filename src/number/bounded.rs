@@ -22,8 +22,7 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::double_double::{DoubleDouble, two_sum};
-use super::{Doubt, Real, round_enclosure};
-use crate::camera;
+use super::{Doubt, Real, round_enclosure, sin_cos};
 
 /// u, the largest relative error of one rounding to f64.
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -158,7 +157,7 @@ impl Real for Bounded {
     }
 
     fn sin_cos(alpha: f64) -> (Bounded, Bounded) {
-        let (sin, cos) = camera::sin_cos(alpha);
+        let (sin, cos) = sin_cos(alpha);
         if alpha == 0.0 {
             return (Bounded::exact(sin), Bounded::exact(cos));
         }

@@ -17,8 +17,7 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::bounded::{Bounded, ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
-use super::{Doubt, Real, round_enclosure, round_sum};
-use crate::camera;
+use super::{Doubt, Real, round_enclosure, round_sum, sine};
 
 /// Above 3u² + 13u³.
 const SUM: f64 = 4.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
@@ -76,6 +75,18 @@ impl DoubleDouble {
     /// A bound on the magnitude of the truth.
     fn magnitude(self) -> f64 {
         (self.high.abs() + self.error) * ROUND_UP
+    }
+
+    /// The f64 nearest to the truth; `None` where it is not known.
+    pub(super) fn to_nearest(self) -> Option<f64> {
+        // Both ends of what the truth can be round to it, so the truth does.
+        let slack = self.error * ROUND_UP;
+        let nearest = |low: f64| self.high + low;
+        let ends = [
+            nearest((self.low - slack).next_down()),
+            nearest((self.low + slack).next_up()),
+        ];
+        (ends[0] == ends[1]).then_some(ends[0])
     }
 
     /// The same number without what is unknown about it.
@@ -226,16 +237,8 @@ impl Real for DoubleDouble {
     }
 
     fn sin_cos(alpha: f64) -> (DoubleDouble, DoubleDouble) {
-        let known = camera::sin_cos_in_two(alpha).map(|(high, low)| DoubleDouble {
-            high,
-            low,
-            error: if alpha == 0.0 {
-                0.0
-            } else {
-                high.abs() * camera::IN_TWO_ERROR + f64::from_bits(1)
-            },
-        });
-        (known[0], known[1])
+        let [sin, cos] = sine::in_two(alpha);
+        (sin, cos)
     }
 
     fn sqrt(self) -> DoubleDouble {
