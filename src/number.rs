@@ -55,6 +55,11 @@ pub(crate) trait Real:
     /// Rounded to the nearest f32, ties to even; a zero is +0.
     fn to_sample(self) -> Result<f32, Self::Doubt>;
 
+    /// The same number, given what else is known about it: for a kind of number that can make use of that.
+    fn or_better(self, _known: DoubleDouble) -> Self {
+        self
+    }
+
     /// About its value, for a person to read.
     fn to_f64(self) -> f64;
 

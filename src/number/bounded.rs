@@ -193,6 +193,10 @@ impl Real for Bounded {
         DoubleDouble::from(self).one_minus_to_the(exponent).into()
     }
 
+    fn or_better(self, known: DoubleDouble) -> Bounded {
+        known.into()
+    }
+
     fn sign(self) -> Result<Ordering, Doubt> {
         if self.value > self.error {
             Ok(Ordering::Greater)

@@ -94,7 +94,22 @@ impl DoubleDouble {
         DoubleDouble { error: 0.0, ..self }
     }
 
-    fn unknown() -> DoubleDouble {
+    /// A number from `high` + `low`, or less by an ulp of `low`, to `high` + `up_to`, or more by one.
+    pub(super) fn around(high: f64, low: f64, up_to: f64) -> DoubleDouble {
+        let ulps = 4.0 * UNIT_ROUNDOFF * (low.abs() + up_to.abs());
+        DoubleDouble {
+            high,
+            low,
+            error: ((up_to - low).abs() + ulps) * ROUND_UP + UNDERFLOW,
+        }
+    }
+
+    /// Whether it is known to about 100 bits.
+    pub(super) fn is_known(&self) -> bool {
+        self.error <= self.high.abs() * f64::EPSILON * f64::EPSILON * 64.0 + 2.0 * UNDERFLOW
+    }
+
+    pub(super) fn unknown() -> DoubleDouble {
         DoubleDouble {
             high: 0.0,
             low: 0.0,
@@ -308,6 +323,10 @@ impl Real for DoubleDouble {
                 };
             }
         }
+    }
+
+    fn or_better(self, known: DoubleDouble) -> DoubleDouble {
+        known
     }
 
     fn sign(self) -> Result<Ordering, Doubt> {

@@ -16,7 +16,7 @@ use dashu_float::FBig;
 use dashu_float::round::Round;
 use dashu_float::round::mode::{Down, HalfEven, Up};
 
-use super::{Real, round_sum};
+use super::{DoubleDouble, Real, round_sum};
 
 /// The bits that an evaluation begins with: more than a double-double has, which has been tried before.
 const FEWEST_BITS: usize = 192;
@@ -81,6 +81,21 @@ impl Expression {
             session.evaluated.push((0, None));
             Expression(session.operations.len() - 1)
         })
+    }
+
+    /// To about 100 bits.
+    pub(crate) fn to_double_double(self) -> DoubleDouble {
+        let parts = |interval: &Interval| {
+            let high = interval.low.to_f64().value();
+            let rest = |end: FBig<HalfEven>| {
+                FBig::try_from(high).map_or(f64::INFINITY, |high| (end - high).to_f64().value())
+            };
+            let low = rest(interval.low.clone().with_rounding());
+            let up_to = rest(interval.high.clone().with_rounding());
+            DoubleDouble::around(high, low, up_to)
+        };
+        let known = self.ask(|interval| Some(parts(interval)).filter(DoubleDouble::is_known));
+        known.unwrap_or_else(|_| DoubleDouble::unknown())
     }
 
     /// Asks `answer` about enclosures of more and more bits until it has one.

@@ -9,6 +9,7 @@ use super::extent::Extents;
 use super::line::Normal;
 use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
+use super::vector::Vector;
 use super::view::{Frame, FrameBearings};
 use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use crate::scene::Scene;
@@ -101,6 +102,18 @@ impl<'a> Ladder<'a> {
                 .or_else(|Doubt| {
                     Expression::session(|| {
                         frame::<Expression>(alpha, size).bearings(scene, mirrored)
+                    })
+                })
+                .map(|bearings| {
+                    bearings.refined(scene, &bounded, mirrored, || {
+                        Expression::session(|| {
+                            let h = frame::<Expression>(alpha, size).halfway(scene, mirrored);
+                            Vector {
+                                x: h.x.to_double_double(),
+                                y: h.y.to_double_double(),
+                                z: h.z.to_double_double(),
+                            }
+                        })
                     })
                 })
         };

@@ -23,20 +23,10 @@ pub(super) struct Shading<R> {
 }
 
 impl<R: Real> Shading<R> {
-    /// `looking` is the way the eye's rays go: v is its opposite. `light_into_eye` says whether so is l: v + l = 0.
-    pub(super) fn new(
-        scene: &Scene,
-        looking: &Direction<R>,
-        to_light: Direction<R>,
-        light_into_eye: bool,
-    ) -> Self {
+    /// `halfway` is that of [`halfway`], or `None` where v + l = 0.
+    pub(super) fn new(scene: &Scene, to_light: Direction<R>, halfway: Option<Vector<R>>) -> Self {
         let (light, material) = (scene.light(), scene.material());
         let to_light_length = to_light.squared_length.sqrt();
-        let halfway = (!light_into_eye).then(|| {
-            let v = -looking.vector.divided_by(looking.squared_length.sqrt());
-            let sum = v + to_light.vector.divided_by(to_light_length);
-            sum.divided_by(sum.length())
-        });
         let intensity = Vector::exact(light.intensity);
         Shading {
             to_light,
@@ -115,6 +105,13 @@ impl<R: Real> Shading<R> {
         let terms = self.terms(normal)?;
         Ok(self.ambient + terms.diffuse + terms.specular)
     }
+}
+
+/// h = (v + l)/|v + l|, where `looking` is the way the eye's rays go, the opposite of v; v + l is not 0.
+pub(super) fn halfway<R: Real>(looking: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
+    let v = -looking.vector.divided_by(looking.squared_length.sqrt());
+    let sum = v + to_light.vector.divided_by(to_light.squared_length.sqrt());
+    sum.divided_by(sum.length())
 }
 
 /// Equation 4-1 but for its ambient term, which is the same everywhere.

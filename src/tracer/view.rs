@@ -20,12 +20,12 @@ use glam::DVec3;
 
 use super::extent::Extent;
 use super::line::{Direction, Hit, Line, Normal};
-use super::shading::Shading;
+use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
 use super::surface::Surface;
 use super::tetrahedron::{Sight, Tetrahedron};
 use super::vector::Vector;
-use crate::number::{Real, all, any};
+use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Support};
 
 /// How the scene is turned and scaled into view space.
@@ -110,6 +110,11 @@ impl<R: Real> Frame<R> {
         }
     }
 
+    /// h, where v + l is not 0.
+    pub(super) fn halfway(&self, scene: &Scene, mirrored: bool) -> Vector<R> {
+        halfway(&looking(), &self.way_to_light(scene, mirrored))
+    }
+
     /// The signs that a view of this frame is made with.
     pub(super) fn bearings(&self, scene: &Scene, mirrored: bool) -> Result<Bearings, R::Doubt> {
         let mirror = self.mirror(scene).filter(|_| mirrored);
@@ -123,7 +128,11 @@ impl<R: Real> Frame<R> {
         let same_way = eye.dot(to_light).sign().map(Ordering::is_gt);
         Ok(Bearings {
             crossings: crossings.collect::<Result<_, _>>()?,
-            light_into_eye: all(parallel.into_iter().chain([same_way]))?,
+            halfway: if all(parallel.into_iter().chain([same_way]))? {
+                Halfway::None
+            } else {
+                Halfway::Good
+            },
         })
     }
 }
@@ -135,8 +144,44 @@ pub(super) type Crossing = [Ordering; 4];
 pub(super) struct Bearings {
     /// How eye rays cross each tetrahedron.
     crossings: Vec<Crossing>,
-    /// Whether v + l = 0: the light comes straight into the eye, and there is no highlight.
-    light_into_eye: bool,
+    halfway: Halfway,
+}
+
+/// How h can be had.
+#[derive(Clone, Copy)]
+enum Halfway {
+    /// Not at all: v + l = 0, the light comes straight into the eye.
+    None,
+    /// In any number.
+    Good,
+    /// Hardly: the light comes so nearly into the eye that v + l cancels. Arbitrary precision has computed it.
+    Poor(Vector<DoubleDouble>),
+}
+
+impl Bearings {
+    /// The same, with h computed by `refine` if that of `frame` is hardly known.
+    pub(super) fn refined(
+        self,
+        scene: &Scene,
+        frame: &Frame<Bounded>,
+        mirrored: bool,
+        refine: impl FnOnce() -> Vector<DoubleDouble>,
+    ) -> Bearings {
+        let halfway = match self.halfway {
+            Halfway::None => Halfway::None,
+            other => {
+                let h = frame.halfway(scene, mirrored);
+                // 15 bits more than an f32 has leave few pixels in doubt.
+                const ENOUGH: f64 = f32::EPSILON as f64 * f32::EPSILON as f64 * 128.0;
+                let poor = [h.x, h.y, h.z].iter().any(|x| {
+                    let known = x.error() < ENOUGH;
+                    !known
+                });
+                if poor { Halfway::Poor(refine()) } else { other }
+            }
+        };
+        Bearings { halfway, ..self }
+    }
 }
 
 /// Those of a frame: of the scene itself, and in the mirror where there is one.
@@ -217,6 +262,18 @@ impl<R: Real> View<R> {
     ) -> View<R> {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
         let to_light = frame.way_to_light(scene, mirrored);
+        let halfway = match bearings.halfway {
+            Halfway::None => None,
+            Halfway::Poor(known) => {
+                let own = halfway(&looking(), &to_light);
+                Some(Vector::new(
+                    own.x.or_better(known.x),
+                    own.y.or_better(known.y),
+                    own.z.or_better(known.z),
+                ))
+            }
+            Halfway::Good => Some(halfway(&looking(), &to_light)),
+        };
         let spheres =
             scene
                 .spheres()
@@ -245,7 +302,7 @@ impl<R: Real> View<R> {
             extents: extents.to_vec(),
             spheres: spheres.collect(),
             tetrahedra: tetrahedra.collect(),
-            shading: Shading::new(scene, &looking(), to_light, bearings.light_into_eye),
+            shading: Shading::new(scene, to_light, halfway),
         }
     }
 
