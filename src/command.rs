@@ -2,6 +2,7 @@
 
 mod arguments;
 mod capture;
+mod compare;
 mod explain;
 mod passage;
 mod view;
@@ -9,8 +10,10 @@ mod view;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand};
-use firsthit::image::{ImageError, SaveError};
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+use firsthit::difference::{HeatError, SizesDiffer};
+use firsthit::image::{ImageError, LoadError, SaveError};
 use firsthit::scene::{BUILTIN_TOML, SceneError};
 use firsthit::screen::ScreenError;
 use firsthit::tracer::TraceError;
@@ -36,6 +39,8 @@ enum Command {
     Capture(capture::Arguments),
     /// Work one pixel through, term by term
     Explain(explain::Arguments),
+    /// Say how far one picture is from another, sample by sample
+    Compare(compare::Arguments),
     /// Print the built-in scene as TOML, to start one's own from
     Scene,
 }
@@ -59,6 +64,27 @@ pub(crate) enum Failure {
     Save(#[from] SaveError),
     #[error(transparent)]
     Viewer(#[from] ViewerError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error("{} and {}: {reason}", a.display(), b.display())]
+    Sizes {
+        a: PathBuf,
+        b: PathBuf,
+        reason: SizesDiffer,
+    },
+    #[error(transparent)]
+    Heat(#[from] HeatError),
+    #[error(
+        "{} and {}: up to {steps} f32 steps apart and {nans} NaNs against a number, beyond the threshold of {threshold}: see where with -o HEAT.png",
+        a.display(), b.display()
+    )]
+    BeyondThreshold {
+        a: PathBuf,
+        b: PathBuf,
+        steps: u32,
+        nans: u64,
+        threshold: u32,
+    },
     #[error("standard output cannot be written: {0}: send it elsewhere")]
     StandardOutput(io::Error),
 }
@@ -70,6 +96,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Scene => print(BUILTIN_TOML),
     }
 }
@@ -86,4 +113,9 @@ fn print(text: &str) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Wrong usage, with the usage of the command that has the arguments `A` below the message.
+fn wrong<A: Args>(command: &'static str, message: impl std::fmt::Display) -> clap::Error {
+    A::augment_args(clap::Command::new(command)).error(ErrorKind::ValueValidation, message)
 }

@@ -2,13 +2,15 @@
 
 mod animation;
 mod exr;
-mod png;
+mod load;
+pub(crate) mod png;
 mod save;
-mod whole_file;
+pub(crate) mod whole_file;
 
 use std::fmt;
 
 pub use animation::Animation;
+pub use load::LoadError;
 pub use save::{Format, SaveError};
 
 /// The largest number of pixels along a side.
@@ -81,7 +83,7 @@ impl Image {
     }
 
     /// The rows from the top of the picture to the bottom, as files store them: 3 N floats each.
-    fn rows_from_top(&self) -> impl Iterator<Item = &[f32]> {
+    pub(crate) fn rows_from_top(&self) -> impl Iterator<Item = &[f32]> {
         self.samples.chunks_exact(3 * self.size as usize).rev()
     }
 }

@@ -28,7 +28,8 @@
 //! | [`Stage`] | the seven stages, from a test image to the animation |
 //! | [`camera`] | α: its frames, its sine and cosine |
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
-//! | [`image`] | N × N pixels of linear floats; PNG, EXR and animated PNG out |
+//! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
+//! | [`difference`] | how far one picture is from another; the false-colour picture of it |
 //! | [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |
 //! | [`viewer`] | the window: keys, the clock of α, the redisplay |
 //!
@@ -50,6 +51,7 @@
 //! - No fused multiply-add: it would give other bits, or be slow, where the processor has none.
 
 pub mod camera;
+pub mod difference;
 pub mod image;
 mod number;
 pub mod scene;

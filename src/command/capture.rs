@@ -5,7 +5,6 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::error::ErrorKind;
 use firsthit::camera::frame_angle;
 use firsthit::image::{Animation, Format};
 use firsthit::{Image, Scene, Stage, Tracer};
@@ -112,10 +111,8 @@ impl Job {
     }
 }
 
-/// Wrong usage, with the usage of this command below the message.
 fn wrong(message: impl std::fmt::Display) -> clap::Error {
-    Arguments::augment_args(clap::Command::new("firsthit capture"))
-        .error(ErrorKind::ValueValidation, message)
+    super::wrong::<Arguments>("firsthit capture", message)
 }
 
 /// The way from an angle to the picture that is written.

@@ -37,7 +37,7 @@ impl Animation {
         };
         let (file, output) = WholeFile::create(path)?;
         let start = || {
-            let mut encoder = png::encoder(output, size);
+            let mut encoder = png::encoder(output, size, size);
             encoder.set_animated(count, 0)?;
             encoder.set_frame_delay(DELAY.0, DELAY.1)?;
             encoder.validate_sequence(true);

@@ -10,11 +10,11 @@ use super::whole_file::Output;
 use super::{Image, display_byte};
 
 /// Bytes in an IDAT chunk: large enough that the 12 around each do not count.
-const CHUNK: usize = 1 << 16;
+pub(crate) const CHUNK: usize = 1 << 16;
 
-/// An encoder of 8-bit RGB pictures of N × N pixels.
-pub(super) fn encoder<W: Write>(output: W, size: u32) -> Encoder<'static, W> {
-    let mut encoder = Encoder::new(output, size, size);
+/// An encoder of 8-bit RGB pictures.
+pub(crate) fn encoder<W: Write>(output: W, width: u32, height: u32) -> Encoder<'static, W> {
+    let mut encoder = Encoder::new(output, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder
@@ -22,7 +22,7 @@ pub(super) fn encoder<W: Write>(output: W, size: u32) -> Encoder<'static, W> {
 
 /// Writes the picture row by row: a second copy of a large one would not fit beside it.
 pub(super) fn write(image: &Image, output: &mut Output) -> io::Result<()> {
-    let mut writer = encoder(output, image.size()).write_header()?;
+    let mut writer = encoder(output, image.size(), image.size()).write_header()?;
     let mut stream = writer.stream_writer_with_size(CHUNK)?;
     let mut bytes = Vec::new();
     for row in image.rows_from_top() {

@@ -1,6 +1,6 @@
 //! A picture into a file, in the format that the file's extension names.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::whole_file::WholeFile;
@@ -118,11 +118,7 @@ impl Image {
             Format::Exr => exr::write,
             Format::Apng => return Err(SaveError::Animation(path.to_owned())),
         };
-        let (file, mut output) = WholeFile::create(path)?;
-        let written = write(self, &mut output).and_then(|()| output.flush());
-        // Closed before it is renamed: some systems insist.
-        drop(output);
-        file.finish(written)
+        WholeFile::write(path, |output| write(self, output))
     }
 }
 

@@ -13,7 +13,7 @@ use tempfile::TempPath;
 use super::SaveError;
 
 /// The name of a file that is still being written through its [`Output`].
-pub(super) struct WholeFile {
+pub(crate) struct WholeFile {
     path: PathBuf,
     target: PathBuf,
     temporary: TempPath,
@@ -21,7 +21,7 @@ pub(super) struct WholeFile {
 }
 
 /// What a [`WholeFile`] holds so far, to be written on.
-pub(super) struct Output {
+pub(crate) struct Output {
     file: BufWriter<File>,
     failure: Failure,
 }
@@ -33,7 +33,7 @@ impl WholeFile {
     /// Starts the file that is to be named `path`, with the permissions that any new file gets.
     ///
     /// A symbolic link is followed, and what it points to is replaced; one that points to nothing is replaced itself.
-    pub(super) fn create(path: &Path) -> Result<(WholeFile, Output), SaveError> {
+    pub(crate) fn create(path: &Path) -> Result<(WholeFile, Output), SaveError> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if let Ok(metadata) = fs::metadata(&target) {
             // Renaming would put a file in the place of a device, and would not ask whether the old file may be written.
@@ -69,8 +69,20 @@ impl WholeFile {
         ))
     }
 
+    /// The whole of a file: what `write` writes.
+    pub(crate) fn write(
+        path: &Path,
+        write: impl FnOnce(&mut Output) -> io::Result<()>,
+    ) -> Result<(), SaveError> {
+        let (file, mut output) = WholeFile::create(path)?;
+        let written = write(&mut output).and_then(|()| output.flush());
+        // Closed before it is renamed: some systems insist.
+        drop(output);
+        file.finish(written)
+    }
+
     /// Gives the file its name, if it was `written` and no write failed.
-    pub(super) fn finish(self, written: io::Result<()>) -> Result<(), SaveError> {
+    pub(crate) fn finish(self, written: io::Result<()>) -> Result<(), SaveError> {
         written.map_err(|error| self.error(error))?;
         if let Some(failure) = self.failure.get() {
             return Err(SaveError::write(&self.path, copy(failure)));
@@ -81,7 +93,7 @@ impl WholeFile {
     }
 
     /// Why the file cannot be written: the first write that failed, else the encoder's own `error`.
-    pub(super) fn error(&self, error: io::Error) -> SaveError {
+    pub(crate) fn error(&self, error: io::Error) -> SaveError {
         SaveError::write(&self.path, self.failure.get().map_or(error, copy))
     }
 }

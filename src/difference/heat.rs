@@ -1,0 +1,165 @@
+//! The false-colour picture of a difference, with its scale below.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
+use super::scale::{OCTAVES, color_at};
+use super::{SizesDiffer, error_color, steps};
+use crate::Image;
+use crate::image::whole_file::{Output, WholeFile};
+use crate::image::{SaveError, png};
+
+/// The narrowest picture that the scale fits under.
+const MIN_WIDTH: usize = 560;
+
+/// Small pictures are magnified up to about this many pixels along a side.
+const MAGNIFIED: usize = 512;
+
+const FONT: (FontWeight, RasterHeight) = (FontWeight::Regular, RasterHeight::Size16);
+
+const PAPER: [u8; 3] = [255, 255, 255];
+
+/// A picture that shows how far `image` is from `truth`, each pixel coloured by [`error_color`] of its worst sample, above a scale with
+/// numbers; as a PNG, whatever the extension of `path`. Pictures of less than 257 pixels along a side are magnified by whole numbers. The file
+/// appears whole or not at all.
+///
+/// # Errors
+/// [`HeatError`] unless both have one size, and where the file cannot be written.
+pub fn save_heat(image: &Image, truth: &Image, path: impl AsRef<Path>) -> Result<(), HeatError> {
+    if image.size() != truth.size() {
+        return Err(SizesDiffer(image.size(), truth.size()).into());
+    }
+    WholeFile::write(path.as_ref(), |output| write(image, truth, output))?;
+    Ok(())
+}
+
+/// A false-colour picture that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum HeatError {
+    /// The two pictures are not of one size.
+    #[error(transparent)]
+    Sizes(#[from] SizesDiffer),
+    /// It cannot be written.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+}
+
+fn write(image: &Image, truth: &Image, output: &mut Output) -> io::Result<()> {
+    let size = image.size() as usize;
+    let magnification = (MAGNIFIED / size).max(1);
+    let width = (size * magnification).max(MIN_WIDTH);
+    let legend = legend(width);
+    let height = size * magnification + legend.rows();
+    let mut writer = png::encoder(output, width as u32, height as u32).write_header()?;
+    let mut stream = writer.stream_writer_with_size(png::CHUNK)?;
+    let margin = (width - size * magnification) / 2;
+    let rows = image.rows_from_top().zip(truth.rows_from_top());
+    for (row, true_row) in rows {
+        let mut line = Strip::new(width, 1);
+        let pixels = row.chunks_exact(3).zip(true_row.chunks_exact(3));
+        for (column, (pixel, truth)) in pixels.enumerate() {
+            let color = error_color(worst(pixel, truth));
+            line.fill(margin + column * magnification, 0, magnification, 1, color);
+        }
+        for _ in 0..magnification {
+            stream.write_all(&line.bytes)?;
+        }
+    }
+    stream.write_all(&legend.bytes)?;
+    stream.finish()?;
+    writer.finish().map_err(::png::EncodingError::into)
+}
+
+/// The worst error of a pixel's samples; a NaN against a number is worse than any.
+fn worst(pixel: &[f32], truth: &[f32]) -> Option<u32> {
+    pixel
+        .iter()
+        .zip(truth)
+        .try_fold(0, |worst, (&sample, &truth)| {
+            steps(sample, truth).map(|steps| steps.max(worst))
+        })
+}
+
+/// The scale: a box for no error, the ramp with its numbers, a box for NaN.
+fn legend(width: usize) -> Strip {
+    let mut strip = Strip::new(width, 76);
+    let (top, height, side) = (28, 18, 24);
+    let left = (width - MIN_WIDTH) / 2 + 12;
+    let title = "largest error of a pixel's samples, in f32 steps";
+    strip.text(width / 2, 6, title);
+
+    let swatch = |strip: &mut Strip, at: usize, color, label| {
+        strip.fill(at, top, side, height, color);
+        strip.text(at + side / 2, top + height + 6, label);
+    };
+    swatch(&mut strip, left, error_color(Some(0)), "0");
+    let (start, length) = (left + side + 24, MIN_WIDTH - 3 * (12 + side) - 48);
+    for x in 0..length {
+        let color = color_at(x as f32 / (length - 1) as f32);
+        strip.fill(start + x, top, 1, height, color);
+    }
+    let labels = ["1", "16", "256", "4096", "65536", "2^20", "2^24.."];
+    let octaves = (0..=OCTAVES).step_by(4);
+    for (octave, label) in octaves.zip(labels) {
+        let x = start + (length - 1) * octave as usize / OCTAVES as usize;
+        strip.fill(x, top + height, 1, 4, [0; 3]);
+        strip.text(x, top + height + 6, label);
+    }
+    swatch(&mut strip, start + length + 36, error_color(None), "NaN");
+    strip
+}
+
+/// Some rows of bytes, from the top.
+struct Strip {
+    width: usize,
+    bytes: Vec<u8>,
+}
+
+impl Strip {
+    fn new(width: usize, rows: usize) -> Strip {
+        let bytes = PAPER.repeat(width * rows);
+        Strip { width, bytes }
+    }
+
+    fn rows(&self) -> usize {
+        self.bytes.len() / (3 * self.width)
+    }
+
+    fn fill(&mut self, left: usize, top: usize, width: usize, height: usize, color: [u8; 3]) {
+        for row in top..top + height {
+            for column in left..left + width {
+                self.set(column, row, color);
+            }
+        }
+    }
+
+    /// Where the strip ends nothing is drawn.
+    fn set(&mut self, column: usize, row: usize, color: [u8; 3]) {
+        let first = 3 * (row * self.width + column);
+        if column < self.width
+            && let Some(pixel) = self.bytes.get_mut(first..first + 3)
+        {
+            pixel.copy_from_slice(&color);
+        }
+    }
+
+    /// A line of ASCII in black, its middle at the column `middle`.
+    fn text(&mut self, middle: usize, top: usize, text: &str) {
+        let (weight, size) = FONT;
+        let advance = get_raster_width(weight, size);
+        let left = middle.saturating_sub(text.len() * advance / 2);
+        let glyphs = text.chars().filter_map(|c| get_raster(c, weight, size));
+        for (place, glyph) in glyphs.enumerate() {
+            for (row, line) in glyph.rows().enumerate() {
+                for (column, &ink) in line.iter().enumerate() {
+                    if ink > 0 {
+                        let paper = 255 - ink;
+                        self.set(left + place * advance + column, top + row, [paper; 3]);
+                    }
+                }
+            }
+        }
+    }
+}

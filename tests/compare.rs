@@ -1,0 +1,403 @@
+//! Promise: `firsthit compare` says how far two pictures are apart, hides no NaN, and fails beyond its threshold.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test stops at the first surprise"
+)]
+
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use firsthit::Image;
+use firsthit::difference::{Difference, error_color};
+use firsthit::image::display_byte;
+use tempfile::TempDir;
+
+/// Runs `firsthit compare` with the words of `line` in `folder`.
+fn compare(folder: &TempDir, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_firsthit"))
+        .current_dir(folder)
+        .arg("compare")
+        .args(line.split(' '))
+        .output()
+        .unwrap()
+}
+
+/// What it printed; it must have succeeded.
+fn compared(folder: &TempDir, line: &str) -> String {
+    let output = compare(folder, line);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        (output.status.code(), &message[..]),
+        (Some(0), ""),
+        "{line}"
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The one line of its failure.
+fn failed(folder: &TempDir, line: &str, status: i32) -> String {
+    let output = compare(folder, line);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(status), "{line}: {message}");
+    if status == 1 {
+        assert_eq!(message.lines().count(), 1, "{line}: {message}");
+    }
+    message
+}
+
+/// What follows `name` in the text of a comparison.
+fn line<'a>(text: &'a str, name: &str) -> &'a str {
+    let mut lines = text.lines().filter_map(|line| line.strip_prefix(name));
+    lines
+        .next()
+        .unwrap_or_else(|| panic!("no {name} in {text}"))
+        .trim()
+}
+
+/// A picture of 4 × 4 pixels, all samples 0.5 but those of `changes`: the place of a sample, and what it is.
+fn picture(changes: &[(usize, f32)]) -> Image {
+    let mut image = Image::new(4).unwrap();
+    image.samples_mut().fill(0.5);
+    for &(place, sample) in changes {
+        image.samples_mut()[place] = sample;
+    }
+    image
+}
+
+fn saved(folder: &TempDir, name: &str, image: &Image) {
+    image.save(folder.path().join(name)).unwrap();
+}
+
+/// The bytes of an RGB PNG of 8 bits, its width, and its height.
+fn png(path: &Path) -> (Vec<u8>, usize, usize) {
+    let decoder = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(info.color_type, png::ColorType::Rgb);
+    (bytes, info.width as usize, info.height as usize)
+}
+
+/// Writes a PNG of other kinds than the program's own.
+fn write_png(
+    path: &Path,
+    (width, height): (u32, u32),
+    color: png::ColorType,
+    depth: png::BitDepth,
+    bytes: &[u8],
+) {
+    let file = BufWriter::new(File::create(path).unwrap());
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(bytes).unwrap();
+}
+
+#[test]
+fn known_errors_are_counted_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    // One step up, a whole half up, three steps down.
+    let b = picture(&[
+        (0, 0.5_f32.next_up()),
+        (7, 1.0),
+        (20, 0.5_f32.next_down().next_down().next_down()),
+    ]);
+    saved(&folder, "b.exr", &b);
+    let text = compared(&folder, "a.exr b.exr");
+    assert_eq!(line(&text, "wrong samples"), "3 of 48 (6.250 %)");
+    // From 1/2 to 1 there are 2^23 floats.
+    let mean = f64::from((1 << 23) + 4) / 48.0;
+    assert_eq!(
+        line(&text, "error in f32 steps"),
+        format!("8388608 at most, {mean:.4} in the mean")
+    );
+    // 2^-24 up, 3 × 2^-25 down.
+    let mean = (0.5 + 2.0_f64.powi(-24) + 3.0 * 2.0_f64.powi(-25)) / 48.0;
+    assert_eq!(
+        line(&text, "absolute error"),
+        format!("5.0000e-1 at most, {mean:.4e} in the mean")
+    );
+    let bytes = picture(&[])
+        .samples()
+        .iter()
+        .zip(b.samples())
+        .fold(0, |sum, (&a, &b)| {
+            sum + u32::from(display_byte(a) != display_byte(b))
+        });
+    assert_eq!(line(&text, "8-bit differences"), bytes.to_string());
+    // The mean of the squares is 0.25/48, but for what eight digits do not show.
+    let ratio = 10.0 * (48.0_f64 / 0.25).log10();
+    assert_eq!(
+        line(&text, "PSNR"),
+        format!("{ratio:.2} dB for a peak of 1")
+    );
+    assert!(line(&text, "NaN").starts_with("0 and 0; 0 against"));
+}
+
+#[test]
+fn a_picture_is_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(
+        &folder,
+        "a.exr",
+        &picture(&[(5, f32::NAN), (6, -0.0), (9, f32::INFINITY)]),
+    );
+    let text = compared(&folder, "a.exr a.exr --threshold 0");
+    assert_eq!(line(&text, "wrong samples"), "0 of 48 (0.000 %)");
+    assert!(line(&text, "error in f32 steps").starts_with("0 at most, 0.0000"));
+    assert!(line(&text, "PSNR").starts_with("infinite"));
+    // They are equal, but they are there.
+    assert!(line(&text, "NaN").starts_with("1 and 1; 0 against"));
+}
+
+#[test]
+fn a_zero_of_another_sign_is_wrong_and_no_step_away() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[(6, -0.0)]));
+    saved(&folder, "b.exr", &picture(&[(6, 0.0)]));
+    let text = compared(&folder, "a.exr b.exr --threshold 0");
+    assert_eq!(line(&text, "wrong samples"), "1 of 48 (2.083 %)");
+    assert!(line(&text, "error in f32 steps").starts_with("0 at most"));
+}
+
+#[test]
+fn a_nan_is_beyond_every_threshold_and_in_no_mean() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    saved(
+        &folder,
+        "b.exr",
+        &picture(&[(5, f32::NAN), (8, 0.5_f32.next_up())]),
+    );
+    let text = compared(&folder, "a.exr b.exr");
+    assert_eq!(line(&text, "wrong samples"), "2 of 48 (4.167 %)");
+    assert_eq!(
+        line(&text, "error in f32 steps"),
+        format!("1 at most, {:.4} in the mean", 1.0 / 47.0)
+    );
+    assert!(line(&text, "NaN").starts_with("0 and 1; 1 against"));
+    for order in ["a.exr b.exr", "b.exr a.exr"] {
+        let message = failed(&folder, &format!("{order} --threshold 4294967295"), 1);
+        assert!(message.contains("1 NaNs against a number"), "{message}");
+    }
+}
+
+#[test]
+fn the_threshold_is_the_most_that_passes() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    saved(
+        &folder,
+        "b.exr",
+        &picture(&[(3, 0.5_f32.next_up().next_up())]),
+    );
+    compared(&folder, "a.exr b.exr --threshold 2");
+    let message = failed(&folder, "a.exr b.exr --threshold 1", 1);
+    assert!(message.contains("up to 2 f32 steps apart"), "{message}");
+    // What was found is said all the same.
+    let output = compare(&folder, "a.exr b.exr --threshold 1");
+    assert!(
+        String::from_utf8(output.stdout)
+            .unwrap()
+            .contains("2 at most")
+    );
+}
+
+#[test]
+fn infinities_are_one_step_beyond_the_largest_float() {
+    let image = |sample| picture(&[(0, sample)]);
+    let difference = Difference::of(&image(f32::INFINITY), &image(f32::MAX)).unwrap();
+    assert_eq!(
+        (difference.max_steps, difference.max_abs),
+        (1, f64::INFINITY)
+    );
+    assert_eq!(difference.psnr(), f64::NEG_INFINITY);
+}
+
+#[test]
+fn a_png_is_bytes_over_255() {
+    let folder = tempfile::tempdir().unwrap();
+    let exact: Vec<(usize, f32)> = (0..48).map(|i| (i, (5 * i) as f32 / 255.0)).collect();
+    saved(&folder, "a.png", &picture(&exact));
+    saved(&folder, "a.exr", &picture(&exact));
+    let text = compared(&folder, "a.png a.exr --threshold 0");
+    assert_eq!(line(&text, "wrong samples"), "0 of 48 (0.000 %)");
+    assert!(line(&text, "note").starts_with("a.png holds"), "{text}");
+    assert_eq!(text.matches("note").count(), 1);
+
+    // The same in grey, with a palette's sixteen bits, and with an opaque alpha.
+    let path = |name: &str| folder.path().join(name);
+    let grey: Vec<u8> = (0..16).collect();
+    let rgb: Vec<u8> = grey.iter().flat_map(|&byte| [byte; 3]).collect();
+    let wide: Vec<u8> = rgb.iter().flat_map(|&byte| [byte, byte]).collect();
+    let rgba: Vec<u8> = grey
+        .iter()
+        .flat_map(|&byte| [byte, byte, byte, 255])
+        .collect();
+    let (eight, sixteen) = (png::BitDepth::Eight, png::BitDepth::Sixteen);
+    write_png(
+        &path("grey.png"),
+        (4, 4),
+        png::ColorType::Grayscale,
+        eight,
+        &grey,
+    );
+    write_png(&path("rgb.png"), (4, 4), png::ColorType::Rgb, eight, &rgb);
+    write_png(
+        &path("wide.png"),
+        (4, 4),
+        png::ColorType::Rgb,
+        sixteen,
+        &wide,
+    );
+    write_png(
+        &path("rgba.png"),
+        (4, 4),
+        png::ColorType::Rgba,
+        eight,
+        &rgba,
+    );
+    let rgb = Image::load(path("rgb.png")).unwrap();
+    // Rows of a file go down, those of a picture up.
+    assert_eq!(rgb.pixel(1, 3), Some([1.0 / 255.0; 3]));
+    for name in ["grey.png", "wide.png", "rgba.png"] {
+        assert!(Image::load(path(name)).unwrap() == rgb, "{name}");
+    }
+    let mut glass = rgba.clone();
+    glass[3] = 254;
+    write_png(
+        &path("glass.png"),
+        (4, 4),
+        png::ColorType::Rgba,
+        eight,
+        &glass,
+    );
+    assert!(failed(&folder, "glass.png rgb.png", 1).contains("transparent"));
+}
+
+#[test]
+fn an_exr_comes_back_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    for size in [1, 2, 17, 65] {
+        let mut image = Image::new(size).unwrap();
+        for (i, sample) in image.samples_mut().iter_mut().enumerate() {
+            *sample = f32::from_bits((i as u32).wrapping_mul(0x9e37_79b1));
+        }
+        saved(&folder, "a.exr", &image);
+        let read = Image::load(folder.path().join("a.exr")).unwrap();
+        let bits = |image: &Image| {
+            image
+                .samples()
+                .iter()
+                .map(|s| s.to_bits())
+                .collect::<Vec<_>>()
+        };
+        assert!(bits(&read) == bits(&image), "{size}");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    saved(&folder, "three.exr", &Image::new(3).unwrap());
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("text.exr"), "no picture").unwrap();
+    fs::write(path("text.png"), "no picture").unwrap();
+    let whole = fs::read(path("a.exr")).unwrap();
+    fs::write(path("half.exr"), &whole[..whole.len() / 2]).unwrap();
+    saved(&folder, "a.png", &picture(&[]));
+    let whole = fs::read(path("a.png")).unwrap();
+    fs::write(path("half.png"), &whole[..whole.len() - 20]).unwrap();
+    let bytes = [0; 24];
+    write_png(
+        &path("wide.png"),
+        (4, 2),
+        png::ColorType::Rgb,
+        png::BitDepth::Eight,
+        &bytes,
+    );
+
+    for (line, says) in [
+        (
+            "a.exr three.exr",
+            "a.exr and three.exr: 4 × 4 and 3 × 3 pixels cannot be compared",
+        ),
+        ("a.exr missing.exr", "missing.exr: cannot be read"),
+        ("a.exr .", ".: this extension"),
+        ("a.exr a.jpeg", "a.jpeg: this extension"),
+        ("a.exr a.apng", "a.apng: this extension"),
+        ("text.exr a.exr", "text.exr: is not a whole exr"),
+        ("text.png a.exr", "text.png: is not a whole png"),
+        ("half.exr a.exr", "half.exr: is not a whole exr"),
+        ("half.png a.exr", "half.png: is not a whole png"),
+        ("wide.png a.exr", "wide.png: is 4 × 2 pixels"),
+        (
+            "a.exr a.exr -o none/heat.png",
+            "none/heat.png: cannot be written",
+        ),
+    ] {
+        let message = failed(&folder, line, 1);
+        assert!(
+            message.starts_with(&format!("firsthit: {says}")),
+            "{line}: {message}"
+        );
+    }
+    for line in [
+        "a.exr",
+        "a.exr a.exr -o heat.exr",
+        "a.exr a.exr --threshold -1",
+    ] {
+        failed(&folder, line, 2);
+    }
+}
+
+#[test]
+fn the_false_colours_are_those_of_the_errors_above_a_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    let b = picture(&[(0, 0.5_f32.next_up()), (15, f32::NAN), (47, 1e30)]);
+    saved(&folder, "b.exr", &b);
+    compared(&folder, "a.exr b.exr -o heat.png");
+    let (bytes, width, height) = png(&folder.path().join("heat.png"));
+    // Magnified 128 times, in the middle; the pixel's row counts from the bottom.
+    let margin = (width - 512) / 2;
+    let color = |column: usize, row: usize| {
+        let places = [(0, 0), (127, 0), (0, 127), (127, 127)];
+        let colors = places.map(|(x, y)| {
+            let first = ((128 * (3 - row) + y) * width + margin + 128 * column + x) * 3;
+            [bytes[first], bytes[first + 1], bytes[first + 2]]
+        });
+        assert!(colors.iter().all(|color| *color == colors[0]));
+        colors[0]
+    };
+    for row in 0..4 {
+        for column in 0..4 {
+            let steps = match (column, row) {
+                (0, 0) => Some(1),
+                (1, 1) => None,
+                (3, 3) => Some(u32::MAX),
+                _ => Some(0),
+            };
+            assert_eq!(color(column, row), error_color(steps), "{column} {row}");
+        }
+    }
+    // Below, every colour of the scale.
+    let scale = &bytes[512 * width * 3..];
+    assert!(height > 512);
+    for steps in [Some(0), Some(1), Some(1 << 12), Some(1 << 24), None] {
+        let color = error_color(steps);
+        assert!(
+            scale.chunks_exact(3).any(|pixel| pixel == color),
+            "{steps:?}"
+        );
+    }
+    // Nothing else is left in the folder.
+    assert_eq!(folder.path().read_dir().unwrap().count(), 3);
+}
