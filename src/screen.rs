@@ -15,6 +15,7 @@ mod offscreen;
 mod osmesa;
 mod placement;
 mod program;
+mod timed;
 
 use std::rc::Rc;
 
@@ -26,6 +27,7 @@ pub use error::ScreenError;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;
+pub use timed::{Cost, Path, TimedScreen};
 
 /// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let the desktop shine through.
 const CLEAR_COLOR: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
@@ -125,19 +127,10 @@ impl Screen {
             });
         }
         let gl = &self.gl;
+        set_unpacking(gl);
         // SAFETY: the context is current. With these pixel-store parameters and no buffer bound, the driver reads exactly
         // size × size × 3 floats, and so many an image of this size has.
         unsafe {
-            gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
-            for (parameter, value) in [
-                (glow::UNPACK_ALIGNMENT, 1),
-                (glow::UNPACK_ROW_LENGTH, 0),
-                (glow::UNPACK_SKIP_ROWS, 0),
-                (glow::UNPACK_SKIP_PIXELS, 0),
-                (glow::UNPACK_SWAP_BYTES, 0),
-            ] {
-                gl.pixel_store_i32(parameter, value);
-            }
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.tex_sub_image_2d(
                 glow::TEXTURE_2D,
@@ -200,6 +193,23 @@ impl Drop for Screen {
         unsafe {
             self.gl.delete_texture(self.texture);
             self.gl.delete_vertex_array(self.vertex_array);
+        }
+    }
+}
+
+/// Makes the driver read pictures as they lie in our memory: row after row without a gap.
+fn set_unpacking(gl: &glow::Context) {
+    // SAFETY: the context is current.
+    unsafe {
+        gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+        for (parameter, value) in [
+            (glow::UNPACK_ALIGNMENT, 1),
+            (glow::UNPACK_ROW_LENGTH, 0),
+            (glow::UNPACK_SKIP_ROWS, 0),
+            (glow::UNPACK_SKIP_PIXELS, 0),
+            (glow::UNPACK_SWAP_BYTES, 0),
+        ] {
+            gl.pixel_store_i32(parameter, value);
         }
     }
 }

@@ -11,7 +11,7 @@ use glutin::display::GlDisplay as _;
 use glutin::prelude::PossiblyCurrentGlContext as _;
 
 use super::ScreenError;
-use super::offscreen::Context;
+use super::offscreen::{Context, Profile};
 
 const LIBRARY: &str = "libEGL.so.1";
 const PACKAGES: &str = "libegl1 libegl-mesa0 libgl1-mesa-dri";
@@ -23,8 +23,8 @@ pub(super) struct Egl {
 }
 
 impl Egl {
-    /// An OpenGL 3.3 core context on the first device that gives one, software before hardware: the same pictures on every machine.
-    pub(super) fn open() -> Result<Egl, ScreenError> {
+    /// An OpenGL context on the first device that gives one, software before hardware: the same pictures on every machine.
+    pub(super) fn open(profile: Profile) -> Result<Egl, ScreenError> {
         let missing = |reason: String| ScreenError::Missing {
             library: LIBRARY,
             reason,
@@ -39,7 +39,7 @@ impl Egl {
         devices.sort_by_key(|device| !device.extensions().contains("EGL_MESA_device_software"));
         let mut reasons = Vec::new();
         for device in &devices {
-            match Egl::on(device) {
+            match Egl::on(device, profile) {
                 Ok(egl) => return Ok(egl),
                 Err(error) => {
                     let name = device.name().unwrap_or("unnamed device");
@@ -50,7 +50,7 @@ impl Egl {
         Err(refusal(reasons.join("; ")))
     }
 
-    fn on(device: &Device) -> Result<Egl, glutin::error::Error> {
+    fn on(device: &Device, profile: Profile) -> Result<Egl, glutin::error::Error> {
         let template = ConfigTemplateBuilder::new()
             .with_api(Api::OPENGL)
             .with_surface_type(ConfigSurfaceTypes::empty())
@@ -59,7 +59,10 @@ impl Egl {
             .build();
         let attributes = ContextAttributesBuilder::new()
             .with_context_api(ContextApi::OpenGl(Some(Version::new(3, 3))))
-            .with_profile(GlProfile::Core)
+            .with_profile(match profile {
+                Profile::Core => GlProfile::Core,
+                Profile::Compatibility => GlProfile::Compatibility,
+            })
             .build(None);
         // SAFETY: no native display is handed over.
         let display = unsafe { Display::with_device(device, None) }?;

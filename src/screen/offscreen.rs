@@ -30,18 +30,27 @@ impl Through {
         }
     }
 
-    fn open(self) -> Result<Box<dyn Context>, ScreenError> {
+    pub(super) fn open(self, profile: Profile) -> Result<Box<dyn Context>, ScreenError> {
         Ok(match self {
             #[cfg(not(target_vendor = "apple"))]
-            Through::Egl => Box::new(Egl::open()?),
+            Through::Egl => Box::new(Egl::open(profile)?),
             #[cfg(target_vendor = "apple")]
             Through::Egl => return Err(ScreenError::NoEgl),
-            Through::OsMesa => Box::new(OsMesa::open()?),
+            Through::OsMesa => Box::new(OsMesa::open(profile)?),
         })
     }
 }
 
-/// An OpenGL 3.3 core context that needs no window. It is released when dropped.
+/// Which OpenGL a context has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Profile {
+    /// Version 3.3 without what is out of date.
+    Core,
+    /// With it: what the document was written for.
+    Compatibility,
+}
+
+/// An OpenGL context that needs no window. It is released when dropped.
 pub(super) trait Context {
     /// Makes it the context of this thread.
     fn make_current(&self) -> Result<(), ScreenError>;
@@ -49,6 +58,14 @@ pub(super) trait Context {
     fn release(&self);
     /// The address of an OpenGL function; the context is current.
     fn proc_address(&self, name: &CStr) -> *const c_void;
+}
+
+impl dyn Context + '_ {
+    /// Its functions; it is current.
+    pub(super) fn functions(&self) -> glow::Context {
+        // SAFETY: the context is current and the addresses are its own functions'.
+        unsafe { glow::Context::from_loader_function_cstr(|name| self.proc_address(name)) }
+    }
 }
 
 /// A [`Screen`] in a context and a float framebuffer of its own.
@@ -69,7 +86,7 @@ impl Offscreen {
     /// # Errors
     /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else those of [`Screen::new`].
     pub fn open(through: Through, size: u32) -> Result<Offscreen, ScreenError> {
-        let context = through.open()?;
+        let context = through.open(Profile::Core)?;
         context.make_current()?;
         let made = Offscreen::make(context.as_ref(), size);
         context.release();
@@ -82,12 +99,10 @@ impl Offscreen {
     }
 
     fn make(context: &dyn Context, size: u32) -> Result<(Screen, Framebuffer), ScreenError> {
-        // SAFETY: the context is current and the addresses are its own functions'.
-        let gl =
-            unsafe { glow::Context::from_loader_function_cstr(|name| context.proc_address(name)) };
-        let gl = Rc::new(gl);
+        let gl = Rc::new(context.functions());
         let screen = Screen::new(gl.clone(), size)?;
-        let framebuffer = Framebuffer::new(gl, size)?;
+        let rows = size.min(MAX_PIXELS / size);
+        let framebuffer = Framebuffer::new(gl, UVec2::new(size, rows), glow::RGBA32F)?;
         Ok((screen, framebuffer))
     }
 
@@ -115,22 +130,26 @@ impl Drop for Offscreen {
     }
 }
 
-/// The most pixels of a [`Framebuffer`]: 64 MiB of floats, where a whole picture of the largest size would take 4 GiB.
+/// The most pixels of a float [`Framebuffer`]: 64 MiB of floats, where a whole picture of the largest size would take 4 GiB.
 const MAX_PIXELS: u32 = 1 << 22;
 
-/// As many rows of 32-bit floats, as wide as the picture, as are drawn and read back at a time.
+/// Rows as wide as the picture, as many as are drawn and read back at a time.
 ///
 /// Red, green, blue and alpha, because OpenGL need not render to floats without alpha.
-struct Framebuffer {
+pub(super) struct Framebuffer {
     gl: Rc<glow::Context>,
     framebuffer: glow::Framebuffer,
     renderbuffer: glow::Renderbuffer,
-    size: u32,
-    rows: u32,
+    size: UVec2,
 }
 
 impl Framebuffer {
-    fn new(gl: Rc<glow::Context>, size: u32) -> Result<Framebuffer, ScreenError> {
+    /// `size` is its width and height, `format` its internal format.
+    pub(super) fn new(
+        gl: Rc<glow::Context>,
+        size: UVec2,
+        format: u32,
+    ) -> Result<Framebuffer, ScreenError> {
         // SAFETY: the context is current.
         let framebuffer = unsafe { gl.create_framebuffer() }
             .map_err(|reason| ScreenError::refused("a framebuffer", &reason))?;
@@ -142,23 +161,22 @@ impl Framebuffer {
             framebuffer,
             renderbuffer,
             size,
-            rows: size.min(MAX_PIXELS / size),
         };
-        framebuffer.allocate()?;
+        framebuffer.allocate(format)?;
         Ok(framebuffer)
     }
 
-    fn allocate(&self) -> Result<(), ScreenError> {
-        let what = "a framebuffer of 32-bit floats";
+    fn allocate(&self, format: u32) -> Result<(), ScreenError> {
+        let what = "a framebuffer as large as the picture";
         let gl = &self.gl;
         // SAFETY: the context is current and the names are of it.
         let status = unsafe {
             gl.bind_renderbuffer(glow::RENDERBUFFER, Some(self.renderbuffer));
             gl.renderbuffer_storage(
                 glow::RENDERBUFFER,
-                glow::RGBA32F,
-                self.size as i32,
-                self.rows as i32,
+                format,
+                self.size.x as i32,
+                self.size.y as i32,
             );
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer));
             gl.framebuffer_renderbuffer(
@@ -169,7 +187,7 @@ impl Framebuffer {
             );
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
         };
-        check(gl, what, self.size)?;
+        check(gl, what, self.size.x)?;
         if status != glow::FRAMEBUFFER_COMPLETE {
             let reason = format!("framebuffer status {status:#06x}");
             return Err(ScreenError::refused(what, &reason));
@@ -177,23 +195,31 @@ impl Framebuffer {
         Ok(())
     }
 
+    /// Makes it what is drawn into and read from.
+    pub(super) fn bind(&self) {
+        // SAFETY: the context is current and the name is of it.
+        unsafe {
+            self.gl
+                .bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer))
+        };
+    }
+
     /// What `screen` shows at one pixel of the framebuffer for each of the picture.
     fn read(&self, screen: &Screen) -> Result<Image, ScreenError> {
-        let (gl, size) = (&self.gl, self.size);
+        let (gl, size) = (&self.gl, self.size.x);
         let mut image = Image::new(size)?;
-        let band = self.rows as usize * size as usize * 3;
-        let surface = UVec2::new(size, self.rows);
+        let band = self.size.y as usize * size as usize * 3;
         let mut placement = Placement {
             origin: IVec2::ZERO,
             extent: size,
         };
         for samples in image.samples_mut().chunks_mut(band) {
             let rows = samples.len() / (size as usize * 3);
+            self.bind();
+            screen.draw(self.size, placement);
             // SAFETY: the context is current. Its pixel-store parameters are as they were made, so that the driver writes
             // size × rows × 3 floats without a gap, and so many are there.
             unsafe {
-                gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffer));
-                screen.draw(surface, placement);
                 gl.read_pixels(
                     0,
                     0,
@@ -204,7 +230,7 @@ impl Framebuffer {
                     glow::PixelPackData::Slice(Some(as_bytes_mut(samples))),
                 );
             }
-            placement.origin.y -= self.rows as i32;
+            placement.origin.y -= self.size.y as i32;
         }
         check(gl, "to draw the picture and read it back", size)?;
         Ok(image)

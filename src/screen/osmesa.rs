@@ -7,15 +7,23 @@ use std::sync::LazyLock;
 use libloading::Library;
 
 use super::ScreenError;
-use super::offscreen::Context;
+use super::offscreen::{Context, Profile};
 
 const LIBRARY: &str = "libOSMesa.so.8";
 const OTHER_NAMES: [&str; 2] = ["libOSMesa.so.6", "libOSMesa.so"];
 const PACKAGES: &str = "libosmesa6";
 
-/// `OSMESA_FORMAT`, `GL_RGBA`, `OSMESA_PROFILE`, `OSMESA_CORE_PROFILE`, `OSMESA_CONTEXT_MAJOR_VERSION`, `OSMESA_CONTEXT_MINOR_VERSION`
-/// and their values, as GL/osmesa.h has them.
-const ATTRIBUTES: [c_int; 9] = [0x22, glow::RGBA as c_int, 0x33, 0x34, 0x36, 3, 0x37, 3, 0];
+/// `OSMESA_FORMAT`, `OSMESA_PROFILE`, `OSMESA_CONTEXT_MAJOR_VERSION` and `OSMESA_CONTEXT_MINOR_VERSION` with their values, as
+/// GL/osmesa.h has them, and the 0 that ends the list.
+fn attributes(profile: Profile) -> [c_int; 9] {
+    let (profile, major, minor) = match profile {
+        Profile::Core => (0x34, 3, 3),
+        // The newest that every OSMesa gives.
+        Profile::Compatibility => (0x35, 2, 1),
+    };
+    let format = glow::RGBA as c_int;
+    [0x22, format, 0x33, profile, 0x36, major, 0x37, minor, 0]
+}
 
 type Handle = *mut c_void;
 type Create = unsafe extern "C" fn(*const c_int, Handle) -> Handle;
@@ -64,15 +72,16 @@ pub(super) struct OsMesa {
 }
 
 impl OsMesa {
-    /// An OpenGL 3.3 core context.
-    pub(super) fn open() -> Result<OsMesa, ScreenError> {
+    /// An OpenGL context.
+    pub(super) fn open(profile: Profile) -> Result<OsMesa, ScreenError> {
         let functions = FUNCTIONS.as_ref().map_err(|reason| ScreenError::Missing {
             library: LIBRARY,
             reason: reason.clone(),
             packages: PACKAGES,
         })?;
         // SAFETY: the list of attributes ends with 0, and the new context shares with none.
-        let handle = unsafe { (functions.create)(ATTRIBUTES.as_ptr(), std::ptr::null_mut()) };
+        let handle =
+            unsafe { (functions.create)(attributes(profile).as_ptr(), std::ptr::null_mut()) };
         if handle.is_null() {
             return Err(refusal("OSMesaCreateContextAttribs gave none"));
         }

@@ -1,0 +1,251 @@
+//! What a displayed frame costs, step by step: this crate's way, and the document's.
+
+use std::ffi::c_void;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use glam::{IVec2, UVec2};
+use glow::HasContext as _;
+
+use super::offscreen::{Context, Framebuffer, Profile};
+use super::{CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError, Through};
+use super::{as_bytes, check, set_unpacking};
+use crate::Image;
+
+/// How pixels get into a framebuffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// As a retained texture, drawn on a quad, in a core context: a [`Screen`].
+    Texture,
+    /// By `glDrawPixels`, as the document does, in a compatibility context.
+    DrawPixels,
+}
+
+impl Path {
+    /// Both.
+    pub const ALL: [Path; 2] = [Path::Texture, Path::DrawPixels];
+
+    /// "texture" or "glDrawPixels".
+    pub fn name(self) -> &'static str {
+        match self {
+            Path::Texture => "texture",
+            Path::DrawPixels => "glDrawPixels",
+        }
+    }
+}
+
+/// What a displayed frame cost. Each step is waited for (`glFinish`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// The texture's new samples; nothing for [`Path::DrawPixels`].
+    pub upload: Duration,
+    /// Clearing and drawing.
+    pub draw: Duration,
+    /// Reading back what was drawn.
+    pub read_back: Duration,
+}
+
+/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one way of pictures into it.
+///
+/// As with [`Offscreen`](super::Offscreen), no context is current before and after each call.
+pub struct TimedScreen {
+    // Dropped in this order: what belongs to the context before the context.
+    framebuffer: Framebuffer,
+    way: Way,
+    gl: Rc<glow::Context>,
+    size: u32,
+    bytes: Vec<u8>,
+    context: Box<dyn Context>,
+}
+
+enum Way {
+    Texture(Screen),
+    DrawPixels(DrawPixels),
+}
+
+/// Functions that a core context no longer has.
+#[derive(Clone, Copy)]
+struct DrawPixels {
+    window_pos: unsafe extern "system" fn(i32, i32),
+    draw_pixels: unsafe extern "system" fn(i32, i32, u32, u32, *const c_void),
+}
+
+impl DrawPixels {
+    fn load(context: &dyn Context) -> Result<DrawPixels, ScreenError> {
+        let address = |name| {
+            let address = context.proc_address(name);
+            (!address.is_null())
+                .then_some(address)
+                .ok_or_else(|| ScreenError::refused("glDrawPixels", "there is no such function"))
+        };
+        let (window_pos, draw_pixels) = (address(c"glWindowPos2i")?, address(c"glDrawPixels")?);
+        // SAFETY: the addresses are those of the functions of these names, and the types are what OpenGL 1.4 declares for them.
+        unsafe {
+            Ok(DrawPixels {
+                window_pos: std::mem::transmute::<*const c_void, unsafe extern "system" fn(i32, i32)>(
+                    window_pos,
+                ),
+                draw_pixels: std::mem::transmute::<
+                    *const c_void,
+                    unsafe extern "system" fn(i32, i32, u32, u32, *const c_void),
+                >(draw_pixels),
+            })
+        }
+    }
+
+    /// Clears the bound framebuffer and draws `image` into its corner.
+    fn draw(self, gl: &glow::Context, image: &Image) {
+        let size = image.size() as i32;
+        let [red, green, blue, alpha] = CLEAR_COLOR;
+        set_unpacking(gl);
+        // SAFETY: the context is current and has the two functions; with these pixel-store parameters the driver reads exactly
+        // size × size × 3 floats, and so many an image of this size has.
+        unsafe {
+            for capability in FRAGMENT_CAPABILITIES {
+                gl.disable(capability);
+            }
+            gl.clear_color(red, green, blue, alpha);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+            (self.window_pos)(0, 0);
+            (self.draw_pixels)(
+                size,
+                size,
+                glow::RGB,
+                glow::FLOAT,
+                as_bytes(image.samples()).as_ptr().cast(),
+            );
+        }
+    }
+}
+
+impl TimedScreen {
+    /// A screen for pictures of `size` × `size` pixels.
+    ///
+    /// # Errors
+    /// Those of [`Offscreen::open`](super::Offscreen::open).
+    pub fn open(through: Through, path: Path, size: u32) -> Result<TimedScreen, ScreenError> {
+        let context = through.open(match path {
+            Path::Texture => Profile::Core,
+            Path::DrawPixels => Profile::Compatibility,
+        })?;
+        context.make_current()?;
+        let made = TimedScreen::make(context.as_ref(), path, size);
+        context.release();
+        let (framebuffer, way, gl) = made?;
+        Ok(TimedScreen {
+            framebuffer,
+            way,
+            gl,
+            size,
+            bytes: Vec::new(),
+            context,
+        })
+    }
+
+    fn make(
+        context: &dyn Context,
+        path: Path,
+        size: u32,
+    ) -> Result<(Framebuffer, Way, Rc<glow::Context>), ScreenError> {
+        let gl = Rc::new(context.functions());
+        let way = match path {
+            Path::Texture => Way::Texture(Screen::new(gl.clone(), size)?),
+            Path::DrawPixels => Way::DrawPixels(DrawPixels::load(context)?),
+        };
+        let framebuffer = Framebuffer::new(gl.clone(), UVec2::splat(size), glow::RGBA8)?;
+        Ok((framebuffer, way, gl))
+    }
+
+    /// Shows `image`, and says what each step cost.
+    ///
+    /// # Errors
+    /// [`ScreenError`] unless `image` has the size of the screen and the driver takes it.
+    pub fn show(&mut self, image: &Image) -> Result<Cost, ScreenError> {
+        self.context.make_current()?;
+        let cost = self.steps(image);
+        self.context.release();
+        cost
+    }
+
+    /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before the first.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn steps(&mut self, image: &Image) -> Result<Cost, ScreenError> {
+        if image.size() != self.size {
+            return Err(ScreenError::Size {
+                image: image.size(),
+                screen: self.size,
+            });
+        }
+        self.framebuffer.bind();
+        let start = Instant::now();
+        if let Way::Texture(screen) = &mut self.way {
+            screen.upload(image)?;
+            self.finish();
+        }
+        let uploaded = Instant::now();
+        match &self.way {
+            Way::Texture(screen) => screen.draw(
+                UVec2::splat(self.size),
+                Placement {
+                    origin: IVec2::ZERO,
+                    extent: self.size,
+                },
+            ),
+            Way::DrawPixels(functions) => functions.draw(&self.gl, image),
+        }
+        self.finish();
+        let drawn = Instant::now();
+        self.read_back()?;
+        let read = Instant::now();
+        check(&self.gl, "to draw the picture and read it back", self.size)?;
+        let upload = match self.way {
+            Way::Texture(_) => uploaded - start,
+            Way::DrawPixels(_) => Duration::ZERO,
+        };
+        Ok(Cost {
+            upload,
+            draw: drawn - uploaded,
+            read_back: read - drawn,
+        })
+    }
+
+    fn finish(&self) {
+        // SAFETY: the context is current.
+        unsafe { self.gl.finish() };
+    }
+
+    fn read_back(&mut self) -> Result<(), ScreenError> {
+        let length = self.size as usize * self.size as usize * 4;
+        let missing = length - self.bytes.len();
+        self.bytes
+            .try_reserve_exact(missing)
+            .map_err(|_| ScreenError::Memory { size: self.size })?;
+        self.bytes.resize(length, 0);
+        // SAFETY: the context is current. Its pixel-store parameters are as they were made, and rows of four bytes a pixel have no gaps
+        // at any alignment, so that the driver writes as many bytes as are there.
+        unsafe {
+            self.gl.read_pixels(
+                0,
+                0,
+                self.size as i32,
+                self.size as i32,
+                glow::RGBA,
+                glow::UNSIGNED_BYTE,
+                glow::PixelPackData::Slice(Some(&mut self.bytes)),
+            );
+        }
+        Ok(())
+    }
+}
+
+impl Drop for TimedScreen {
+    fn drop(&mut self) {
+        // For the fields that are dropped next. Where it fails, they had better find no context than another one.
+        if self.context.make_current().is_err() {
+            self.context.release();
+        }
+    }
+}
