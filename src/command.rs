@@ -5,6 +5,7 @@ mod capture;
 mod compare;
 mod explain;
 mod passage;
+mod report;
 mod view;
 
 use std::io::{self, Write};
@@ -14,6 +15,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use firsthit::difference::{HeatError, SizesDiffer};
 use firsthit::image::{ImageError, LoadError, SaveError};
+use firsthit::report::{PlotError, ReportError};
 use firsthit::scene::{BUILTIN_TOML, SceneError};
 use firsthit::screen::ScreenError;
 use firsthit::tracer::TraceError;
@@ -39,6 +41,8 @@ enum Command {
     Capture(capture::Arguments),
     /// Work one pixel through, term by term
     Explain(explain::Arguments),
+    /// Measure speed against error: every kernel's times, and how far it is from the truth
+    Report(report::Arguments),
     /// Say how far one picture is from another, sample by sample
     Compare(compare::Arguments),
     /// Print the built-in scene as TOML, to start one's own from
@@ -64,6 +68,10 @@ pub(crate) enum Failure {
     Save(#[from] SaveError),
     #[error(transparent)]
     Viewer(#[from] ViewerError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error(transparent)]
+    Plot(#[from] PlotError),
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error("{} and {}: {reason}", a.display(), b.display())]
@@ -96,6 +104,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Scene => print(BUILTIN_TOML),
     }

@@ -31,6 +31,7 @@
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another; the false-colour picture of it |
 //! | [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |
+//! | [`report`] | speed against error: times, errors, a table, JSON, a plot |
 //! | [`viewer`] | the window: keys, the clock of α, the redisplay |
 //!
 //! # What the picture is
@@ -54,6 +55,7 @@ pub mod camera;
 pub mod difference;
 pub mod image;
 mod number;
+pub mod report;
 pub mod scene;
 pub mod screen;
 mod stage;

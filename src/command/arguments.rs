@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::num::NonZeroUsize;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -34,22 +35,24 @@ pub(crate) struct PictureArguments {
 impl PictureArguments {
     /// The scene of `--scene`, else the built-in one.
     pub(crate) fn scene(&self) -> Result<Scene, Failure> {
-        let Some(path) = &self.scene else {
-            return Ok(Scene::builtin());
-        };
-        let text = read(path).map_err(|reason| Failure::Unreadable {
-            path: path.clone(),
-            reason,
-        })?;
-        Scene::from_toml(&text).map_err(|reason| Failure::Scene {
-            path: path.clone(),
-            reason,
-        })
+        match &self.scene {
+            Some(path) => read_scene(path),
+            None => Ok(Scene::builtin()),
+        }
     }
 
     /// The number of threads as the library takes it: 0 for one a core.
     pub(crate) fn threads(&self) -> usize {
         self.threads.map_or(0, NonZeroUsize::get)
+    }
+}
+
+/// The scene in the file `path`.
+pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let path = path.to_owned();
+    match read(&path) {
+        Ok(text) => Scene::from_toml(&text).map_err(|reason| Failure::Scene { path, reason }),
+        Err(reason) => Err(Failure::Unreadable { path, reason }),
     }
 }
 
@@ -77,6 +80,18 @@ pub(crate) fn stage(text: &str) -> Result<Stage, &'static str> {
         .ok()
         .and_then(Stage::from_number)
         .ok_or("the stages are 1 to 7")
+}
+
+/// Frames A..B, both ends included.
+pub(crate) fn frames(text: &str) -> Result<RangeInclusive<u64>, &'static str> {
+    let (first, last) = text
+        .split_once("..")
+        .ok_or("two whole numbers with .. between them are needed, as in 0..20")?;
+    match (first.parse(), last.parse()) {
+        (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
+        (Ok(_), Ok(_)) => Err("the first frame comes after the last"),
+        _ => Err("both ends must be whole numbers from 0 to 18446744073709551615"),
+    }
 }
 
 /// A number of radians, or of radians a second.
@@ -107,7 +122,7 @@ impl AngleArguments {
 }
 
 /// A kernel by its name.
-fn kernel() -> impl TypedValueParser<Value = Kernel> {
+pub(crate) fn kernel() -> impl TypedValueParser<Value = Kernel> {
     PossibleValuesParser::new(Kernel::ALL.map(Kernel::name)).try_map(|name| {
         Kernel::ALL
             .into_iter()

@@ -11,7 +11,7 @@ use firsthit::{Image, Scene, Stage, Tracer};
 use indicatif::{ProgressBar, ProgressFinish};
 
 use super::Failure;
-use super::arguments::{AngleArguments, PictureArguments, stage};
+use super::arguments::{AngleArguments, PictureArguments, frames, stage};
 use super::passage::{Passage, Way};
 
 #[derive(Args)]
@@ -33,17 +33,6 @@ pub(crate) struct Arguments {
     /// a .png or .exr becomes the frame's number
     #[arg(short, long, value_name = "PATH")]
     output: PathBuf,
-}
-
-fn frames(text: &str) -> Result<RangeInclusive<u64>, &'static str> {
-    let (first, last) = text
-        .split_once("..")
-        .ok_or("two whole numbers with .. between them are needed, as in 0..20")?;
-    match (first.parse(), last.parse()) {
-        (Ok(first), Ok(last)) if first <= last => Ok(first..=last),
-        (Ok(_), Ok(_)) => Err("the first frame comes after the last"),
-        _ => Err("both ends must be whole numbers from 0 to 18446744073709551615"),
-    }
 }
 
 /// What is to be written.

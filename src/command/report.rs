@@ -1,0 +1,126 @@
+//! `firsthit report`: speed against error.
+
+use std::num::NonZeroUsize;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use clap::{Args, value_parser};
+use firsthit::image::MAX_SIZE;
+use firsthit::report::{self, Group, NamedScene, Progress, Request};
+use firsthit::{Kernel, Stage};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::arguments::{frames, kernel, read_scene, stage};
+use super::{Failure, print, wrong};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// A scene in TOML; may be given several times; the built-in scene if not given
+    #[arg(long = "scene", value_name = "FILE")]
+    scenes: Vec<PathBuf>,
+    /// The hard scenes too: those that the kernels are tested on
+    #[arg(long)]
+    hard: bool,
+    /// A stage, 1 to 7; may be given several times; 6 if not given
+    #[arg(long = "stage", value_name = "STAGE", value_parser = stage)]
+    stages: Vec<Stage>,
+    /// Pixels along a side of the picture
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = value_parser!(u32).range(1..=i64::from(MAX_SIZE)))]
+    size: u32,
+    /// All frames from A to B, both included
+    #[arg(long, value_name = "A..B", default_value = "0..20", value_parser = frames)]
+    frames: RangeInclusive<u64>,
+    /// A kernel; may be given several times; exact, fast, double and listing if not given
+    #[arg(long = "kernel", value_name = "NAME", value_parser = kernel())]
+    kernels: Vec<Kernel>,
+    /// The number of threads to measure beside one; one a core if not given
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// A file to write the report to, as JSON
+    #[arg(long, value_name = "PATH")]
+    json: Option<PathBuf>,
+    /// A file to draw error against time into, as SVG
+    #[arg(long, value_name = "PATH.svg")]
+    plot: Option<PathBuf>,
+}
+
+/// What is measured where no kernel is chosen.
+const KERNELS: [Kernel; 4] = [Kernel::Exact, Kernel::Fast, Kernel::Double, Kernel::Listing];
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(path) = &arguments.plot {
+        let is_svg = path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+        let message = match &arguments.json {
+            _ if !is_svg => "the plot is an .svg",
+            Some(json) if json == path => "the plot and the JSON need two files",
+            _ => "",
+        };
+        if !message.is_empty() {
+            let message = format!("{}: {message}", path.display());
+            return Err(wrong::<Arguments>("firsthit report", message).into());
+        }
+    }
+    let request = request(arguments)?;
+    for path in [&arguments.json, &arguments.plot].into_iter().flatten() {
+        report::can_save(path)?;
+    }
+    let bar = ProgressBar::new(0).with_style(style());
+    let report = report::measure(&request, &mut |Progress { done, of, next }| {
+        bar.set_length(of);
+        bar.set_position(done);
+        bar.set_message(next.to_owned());
+    });
+    bar.finish_and_clear();
+    let report = report?;
+    if let Some(path) = &arguments.json {
+        report::save(&report.json(), path)?;
+    }
+    if let Some(path) = &arguments.plot {
+        report::save(&report.plot()?, path)?;
+    }
+    print(&report.table())
+}
+
+fn request(arguments: &Arguments) -> Result<Request, Failure> {
+    let mut scenes = Vec::new();
+    for path in &arguments.scenes {
+        scenes.push(NamedScene {
+            name: path.display().to_string(),
+            group: Group::File,
+            scene: read_scene(path)?,
+        });
+    }
+    if scenes.is_empty() {
+        scenes.push(NamedScene::builtin());
+    }
+    if arguments.hard {
+        scenes.extend(NamedScene::hard());
+    }
+    Ok(Request {
+        scenes,
+        stages: chosen(&arguments.stages, &[Stage::Reflection]),
+        kernels: chosen(&arguments.kernels, &KERNELS),
+        size: arguments.size,
+        frames: arguments.frames.clone(),
+        threads: arguments.threads.map_or(0, NonZeroUsize::get),
+    })
+}
+
+/// What was given, each once, or else what is measured by default.
+fn chosen<T: Copy + PartialEq>(given: &[T], default: &[T]) -> Vec<T> {
+    let mut chosen = Vec::new();
+    for &one in if given.is_empty() { default } else { given } {
+        if !chosen.contains(&one) {
+            chosen.push(one);
+        }
+    }
+    chosen
+}
+
+/// A bar with the time that is left and what is being done.
+fn style() -> ProgressStyle {
+    ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left: {msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+}

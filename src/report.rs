@@ -1,0 +1,381 @@
+//! Speed against error: how fast each kernel is, and how far from the truth.
+//!
+//! Errors are measured against [`Kernel::Reference`], decisions as decisions and samples as samples, over all frames. An error in
+//! f32 steps counts the floats from a sample to the true value correctly rounded, so 0 is a correctly rounded sample, whose distance
+//! from the real number itself is at most ½; the largest and the mean are over pixels whose decision is right, since a wrong decision is
+//! an error of another kind. Absolute errors and 8-bit differences are over all pixels.
+//!
+//! A sample of time is a whole round of frames, divided by filling the same picture with one colour as often, by the fastest stores
+//! there are; both alternate, so that a slow moment of the machine hits both.
+
+mod errors;
+mod fill;
+mod hard;
+mod json;
+mod machine;
+mod measure;
+mod pipeline;
+mod plot;
+mod table;
+
+use std::num::NonZeroUsize;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use std::thread;
+
+use crate::camera::frame_angle;
+use crate::image::whole_file::WholeFile;
+use crate::image::{ImageError, SaveError};
+use crate::tracer::{Decision, TraceError};
+use crate::{Image, Kernel, Scene, Stage, Tracer};
+pub use errors::{Errors, WrongPixels};
+pub use hard::HARD_SCENES;
+pub use machine::Machine;
+use measure::Filler;
+pub use measure::{Spread, Timing};
+pub use pipeline::Pipeline;
+pub use plot::PlotError;
+
+/// Where a scene comes from; the plot has a panel for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// The document's scene.
+    Builtin,
+    /// A scene file.
+    File,
+    /// The stability suite.
+    Hard,
+}
+
+/// A scene with the name that the report gives it.
+#[derive(Clone, Debug)]
+pub struct NamedScene {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from.
+    pub group: Group,
+    /// The scene.
+    pub scene: Scene,
+}
+
+impl NamedScene {
+    /// The built-in scene, under the name "builtin".
+    pub fn builtin() -> NamedScene {
+        NamedScene {
+            name: "builtin".to_owned(),
+            group: Group::Builtin,
+            scene: Scene::builtin(),
+        }
+    }
+
+    /// Every scene of the stability suite.
+    pub fn hard() -> impl Iterator<Item = NamedScene> {
+        HARD_SCENES.iter().filter_map(|&(name, text)| {
+            // A test reads every one of them.
+            let scene = Scene::from_toml(text).ok()?;
+            let (name, group) = (name.to_owned(), Group::Hard);
+            Some(NamedScene { name, group, scene })
+        })
+    }
+}
+
+/// What is to be measured: every kernel on every scene in every stage.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The scenes.
+    pub scenes: Vec<NamedScene>,
+    /// The stages.
+    pub stages: Vec<Stage>,
+    /// The kernels.
+    pub kernels: Vec<Kernel>,
+    /// N, 1 to [`MAX_SIZE`](crate::image::MAX_SIZE).
+    pub size: u32,
+    /// The frames of the animation.
+    pub frames: RangeInclusive<u64>,
+    /// The number of threads to measure beside one; 0 is one a core.
+    pub threads: usize,
+}
+
+/// How far the measuring is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// Done of [`Progress::of`], about in proportion to time.
+    pub done: u64,
+    /// All there is to be done.
+    pub of: u64,
+    /// What comes next.
+    pub next: &'a str,
+}
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// On what.
+    pub machine: Machine,
+    /// N.
+    pub size: u32,
+    /// The frames of the animation.
+    pub frames: RangeInclusive<u64>,
+    /// The most threads.
+    pub threads: usize,
+    /// How the picture was filled, with one thread and with the most, for people.
+    pub fills: Vec<String>,
+    /// Each kernel on each scene in each stage.
+    pub rows: Vec<Row>,
+    /// What it costs to display a frame.
+    pub pipelines: Vec<Pipeline>,
+}
+
+/// A kernel on a scene in a stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The scene's name.
+    pub scene: String,
+    /// Where the scene comes from.
+    pub group: Group,
+    /// The stage.
+    pub stage: Stage,
+    /// The kernel.
+    pub kernel: Kernel,
+    /// What was measured, or why the kernel refuses the scene.
+    pub measured: Result<Measured, String>,
+}
+
+/// Times and errors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// With one thread, then with the most, if they are more.
+    pub timings: Vec<Timing>,
+    /// Over all frames.
+    pub errors: Errors,
+}
+
+/// A report that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// There is no picture of that size.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// It cannot be traced, for another reason than that a kernel refuses a scene.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+}
+
+/// Threads that run at the same time.
+fn cores() -> usize {
+    thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
+/// Measures all that is requested, and tells `progress` before each step.
+///
+/// # Errors
+/// [`ReportError`] where there is no room for the pictures, or no threads.
+pub fn measure(
+    request: &Request,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Report, ReportError> {
+    let threads = match request.threads {
+        0 => cores(),
+        threads => threads,
+    };
+    let mut counts = vec![1];
+    if threads > 1 {
+        counts.push(threads);
+    }
+    let angles: Vec<f64> = request.frames.clone().map(frame_angle).collect();
+    let views = request.scenes.len() * request.stages.len();
+    let work = Work {
+        request,
+        threads,
+        image: Image::new(request.size)?,
+        truth: Image::new(request.size)?,
+        // A frame traced for its errors is 1; a row of times takes at least three rounds for each number of threads.
+        steps: Steps {
+            done: 0,
+            of: (views * angles.len() * (1 + request.kernels.len() * (1 + 3 * counts.len())))
+                as u64,
+            progress,
+        },
+        angles,
+    };
+    work.report(&counts)
+}
+
+/// The measuring under way.
+struct Work<'a> {
+    request: &'a Request,
+    threads: usize,
+    angles: Vec<f64>,
+    image: Image,
+    truth: Image,
+    steps: Steps<'a>,
+}
+
+struct Steps<'a> {
+    done: u64,
+    of: u64,
+    progress: &'a mut dyn FnMut(Progress<'_>),
+}
+
+impl Steps<'_> {
+    /// Says what comes `next`, then counts it as done.
+    fn next(&mut self, next: &str, steps: usize) {
+        let (done, of) = (self.done, self.of);
+        (self.progress)(Progress { done, of, next });
+        self.done += steps as u64;
+    }
+}
+
+impl Work<'_> {
+    fn report(mut self, counts: &[usize]) -> Result<Report, ReportError> {
+        let mut fillers = Vec::new();
+        for &threads in counts {
+            fillers.push((threads, Filler::fastest(threads, &mut self.image)?));
+        }
+        let mut rows = Vec::new();
+        for named in &self.request.scenes {
+            for &stage in &self.request.stages {
+                let errors = self.errors(named, stage)?;
+                for (&kernel, errors) in self.request.kernels.iter().zip(errors) {
+                    let measured = match errors {
+                        Ok(errors) => {
+                            let timings = self.timings(named, stage, kernel, &fillers)?;
+                            Ok(Measured { timings, errors })
+                        }
+                        Err(refusal) => {
+                            self.steps.done += (3 * self.angles.len() * counts.len()) as u64;
+                            Err(refusal)
+                        }
+                    };
+                    rows.push(Row {
+                        scene: named.name.clone(),
+                        group: named.group,
+                        stage,
+                        kernel,
+                        measured,
+                    });
+                }
+            }
+        }
+        let pipelines = pipeline::measure(self.request, self.threads, &mut self.image)?;
+        Ok(Report {
+            machine: Machine::this(),
+            size: self.request.size,
+            frames: self.request.frames.clone(),
+            threads: self.threads,
+            fills: fillers.iter().map(|(_, filler)| filler.how()).collect(),
+            rows,
+            pipelines,
+        })
+    }
+
+    /// The errors of every kernel, or why it refuses the scene.
+    fn errors(
+        &mut self,
+        named: &NamedScene,
+        stage: Stage,
+    ) -> Result<Vec<Result<Errors, String>>, ReportError> {
+        let mut reference = Tracer::new(Kernel::Reference, self.threads)?;
+        let mut tracers = Vec::new();
+        for &kernel in &self.request.kernels {
+            tracers.push((Tracer::new(kernel, self.threads)?, Ok(Errors::default())));
+        }
+        for &alpha in &self.angles {
+            self.steps.next(&format!("{}, the truth", named.name), 1);
+            let scene = &named.scene;
+            let true_decisions =
+                reference.trace_with_decisions(scene, stage, alpha, &mut self.truth)?;
+            let truth = (&self.truth, &true_decisions[..]);
+            for (tracer, errors) in &mut tracers {
+                let name = tracer.kernel().name();
+                self.steps
+                    .next(&format!("{}, errors of {name}", named.name), 1);
+                let Ok(sum) = errors else { continue };
+                match decide(tracer, scene, stage, alpha, &mut self.image)? {
+                    Ok(decisions) => {
+                        sum.add((&self.image, &decisions), truth, tracer.in_doubt());
+                    }
+                    Err(refusal) => *errors = Err(refusal),
+                }
+            }
+        }
+        Ok(tracers.into_iter().map(|(_, errors)| errors).collect())
+    }
+
+    /// The times of a kernel that does not refuse the scene.
+    fn timings(
+        &mut self,
+        named: &NamedScene,
+        stage: Stage,
+        kernel: Kernel,
+        fillers: &[(usize, Filler)],
+    ) -> Result<Vec<Timing>, ReportError> {
+        let mut timings = Vec::new();
+        for (threads, filler) in fillers {
+            let s = if *threads == 1 { "" } else { "s" };
+            let next = format!(
+                "{}, time of {}, {threads} thread{s}",
+                named.name,
+                kernel.name()
+            );
+            self.steps.next(&next, 3 * self.angles.len());
+            let mut tracer = Tracer::new(kernel, *threads)?;
+            let frames = (&named.scene, stage, &self.angles[..]);
+            timings.extend(measure::time(
+                &mut tracer,
+                *threads,
+                frames,
+                &mut self.image,
+                filler,
+            )?);
+        }
+        Ok(timings)
+    }
+}
+
+/// The decisions of a frame, or why the kernel refuses the scene.
+fn decide(
+    tracer: &mut Tracer,
+    scene: &Scene,
+    stage: Stage,
+    alpha: f64,
+    image: &mut Image,
+) -> Result<Result<Vec<Decision>, String>, TraceError> {
+    match tracer.trace_with_decisions(scene, stage, alpha, image) {
+        Ok(decisions) => Ok(Ok(decisions)),
+        Err(refusal @ TraceError::Listing { .. }) => Ok(Err(refusal.to_string())),
+        Err(error) => Err(error),
+    }
+}
+
+/// Writes `text` to `path`. The file appears whole or not at all.
+///
+/// # Errors
+/// [`SaveError`] where it cannot be written.
+pub fn save(text: &str, path: impl AsRef<Path>) -> Result<(), SaveError> {
+    use std::io::Write as _;
+    WholeFile::write(path.as_ref(), |output| output.write_all(text.as_bytes()))
+}
+
+/// Whether a file can be written at `path`: better known before hours of measuring than after. Nothing is left there.
+///
+/// # Errors
+/// As [`save`].
+pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
+    WholeFile::create(path.as_ref()).map(|_| ())
+}
+
+impl Report {
+    /// How many frames a round has.
+    pub fn frame_count(&self) -> u64 {
+        (self.frames.end() - self.frames.start()).saturating_add(1)
+    }
+
+    fn mpixel_per_s(&self, ms: Spread) -> f64 {
+        f64::from(self.size).powi(2) / ms.median / 1e3
+    }
+
+    fn gb_per_s(&self, ms: Spread) -> f64 {
+        12.0 * f64::from(self.size).powi(2) / ms.median / 1e6
+    }
+}

@@ -1,0 +1,50 @@
+//! The scenes of the stability suite: each provokes something that others have stumbled over, which its first line names.
+
+macro_rules! scenes {
+    ($($name:literal)*) => {
+        &[$(($name, include_str!(concat!("../../tests/scenes/", $name, ".toml")))),*]
+    };
+}
+
+/// Their names and their texts, sorted by name.
+#[rustfmt::skip]
+pub const HARD_SCENES: &[(&str, &str)] = scenes! {
+    "along_faces"
+    "axis_spheres"
+    "below_the_floor"
+    "crossing_spheres"
+    "crossing_tetrahedra"
+    "crowd"
+    "duplicated_solids"
+    "edge_on_the_axis"
+    "edges_on_samples"
+    "exponent_million"
+    "extremes"
+    "extremes_without_floor"
+    "far_ring"
+    "far_spheres"
+    "floor_border_on_samples"
+    "giants"
+    "grazing_light"
+    "highlights"
+    "largest_samples"
+    "light_along_the_axes"
+    "light_from_below"
+    "light_from_the_eye"
+    "light_in_the_floor"
+    "light_into_the_eye"
+    "light_into_the_mirrored_eye"
+    "light_nearly_into_the_eye"
+    "midpoint_samples"
+    "needle"
+    "nested_spheres"
+    "resting_spheres"
+    "shared_faces"
+    "skew_shared_plane"
+    "speck_on_a_sample"
+    "spheres_in_the_floor"
+    "subnormal_samples"
+    "tiny_and_huge_floor"
+    "touching_solids"
+    "wide_light"
+};

@@ -1,0 +1,106 @@
+//! What the measuring was done on, and with.
+
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+use serde::Serialize;
+
+/// A machine, and the program on it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Machine {
+    /// The processor, as it names itself; "unknown" where the system does not tell.
+    pub cpu: String,
+    /// What the processor has of SIMD instruction sets.
+    pub features: Vec<&'static str>,
+    /// The architecture that the program was built for.
+    pub architecture: &'static str,
+    /// The operating system.
+    pub os: &'static str,
+    /// Threads that run at the same time.
+    pub cores: usize,
+    /// The version of the program.
+    pub version: &'static str,
+    /// The commit that it was built from, "-dirty" behind it where something was changed since: the environment variable
+    /// `FIRSTHIT_COMMIT` of the build, else the commit that its source folder is at now; `None` where neither can be had.
+    pub commit: Option<String>,
+    /// Whether it was built without optimisation: then its times mean little.
+    pub debug_build: bool,
+}
+
+impl Machine {
+    /// This one.
+    pub fn this() -> Machine {
+        Machine {
+            cpu: cpu(),
+            features: features(),
+            architecture: env::consts::ARCH,
+            os: env::consts::OS,
+            cores: super::cores(),
+            version: env!("CARGO_PKG_VERSION"),
+            commit: option_env!("FIRSTHIT_COMMIT")
+                .map(str::to_owned)
+                .or_else(commit),
+            debug_build: cfg!(debug_assertions),
+        }
+    }
+}
+
+fn cpu() -> String {
+    // Linux, then Windows.
+    let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = information
+        .lines()
+        .filter_map(|line| line.split_once(':'))
+        .find(|(key, _)| key.trim() == "model name")
+        .map(|(_, model)| model.trim().to_owned());
+    model
+        .or_else(|| env::var("PROCESSOR_IDENTIFIER").ok())
+        .unwrap_or_else(|| "unknown".to_owned())
+}
+
+macro_rules! detected {
+    ($detected:ident: $($feature:tt)*) => {
+        [$(($feature, std::arch::$detected!($feature))),*]
+            .into_iter()
+            .filter_map(|(feature, is_there)| is_there.then_some(feature))
+            .collect()
+    };
+}
+
+#[cfg(target_arch = "x86_64")]
+fn features() -> Vec<&'static str> {
+    detected!(is_x86_feature_detected: "sse2" "sse4.1" "sse4.2" "avx" "avx2" "fma" "avx512f" "avx512bw" "avx512dq" "avx512vl")
+}
+
+#[cfg(target_arch = "aarch64")]
+fn features() -> Vec<&'static str> {
+    detected!(is_aarch64_feature_detected: "neon" "sve" "sve2")
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn features() -> Vec<&'static str> {
+    Vec::new()
+}
+
+fn commit() -> Option<String> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // Unpacked from an archive, the source may lie in a repository that is another's.
+    if !source.join(".git").exists() {
+        return None;
+    }
+    let output = Command::new("git")
+        .arg("-C")
+        .arg(source)
+        .args([
+            "describe",
+            "--always",
+            "--dirty",
+            "--abbrev=12",
+            "--exclude=*",
+        ])
+        .output()
+        .ok()?;
+    let commit = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (output.status.success() && !commit.is_empty()).then_some(commit)
+}

@@ -1,0 +1,203 @@
+//! Times: rounds of frames against filling the same picture as often, one after the other.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+
+use super::fill::{Stores, fill};
+use crate::tracer::TraceError;
+use crate::{Image, Kernel, Scene, Stage, Tracer};
+
+/// Few samples of a slow kernel, many of a fast one: about this long for each row and number of threads.
+const TIME: Duration = Duration::from_millis(1500);
+
+/// A median of fewer would be one of them.
+const MIN_SAMPLES: usize = 3;
+
+/// More change nothing.
+const MAX_SAMPLES: usize = 101;
+
+/// The middle of some measurements, and how far they spread.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// As many are below it as above.
+    pub median: f64,
+    /// The least.
+    pub min: f64,
+    /// The most.
+    pub max: f64,
+}
+
+impl Spread {
+    /// The spread of `values`; `None` of none.
+    pub fn of(mut values: Vec<f64>) -> Option<Spread> {
+        values.sort_by(f64::total_cmp);
+        let (&min, &max) = (values.first()?, values.last()?);
+        let middle = values.len() / 2;
+        let median = match values.len() % 2 {
+            0 => (values[middle - 1] + values[middle]) / 2.0,
+            _ => values[middle],
+        };
+        Some(Spread { median, min, max })
+    }
+}
+
+/// How fast one kernel traces some frames, with one number of threads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timing {
+    /// Threads that traced, and filled.
+    pub threads: usize,
+    /// The vector instructions that the kernel used, as [`Simd`](crate::tracer::Simd) names them; "none" if none.
+    pub simd: &'static str,
+    /// Rounds measured.
+    pub samples: usize,
+    /// Milliseconds a frame.
+    pub ms: Spread,
+    /// Milliseconds to fill the picture with one colour, measured between the rounds.
+    pub fill_ms: Spread,
+    /// The time of a round by the time of filling as often.
+    pub fill_ratio: Spread,
+    /// The same with each frame traced over its predecessor; `None` as long as the tracer cannot.
+    pub retained_fill_ratio: Option<Spread>,
+}
+
+/// The fastest fill for one size and at most some threads.
+#[derive(Clone)]
+pub(super) struct Filler {
+    stores: Stores,
+    /// `None` for one thread.
+    pool: Option<Arc<ThreadPool>>,
+}
+
+impl Filler {
+    /// Tries every way and keeps the fastest.
+    pub(super) fn fastest(threads: usize, image: &mut Image) -> Result<Filler, TraceError> {
+        let mut pools = vec![None];
+        if threads > 1 {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = pool.map_err(|source| TraceError::Threads { threads, source })?;
+            pools.push(Some(Arc::new(pool)));
+        }
+        let mut fastest = Filler {
+            stores: Stores::Plain,
+            pool: None,
+        };
+        let mut least = Duration::MAX;
+        // In turn, so that a slow moment of the machine hits all of them.
+        for _ in 0..9 {
+            for (pool, stores) in pools
+                .iter()
+                .flat_map(|pool| Stores::ALL.map(|stores| (pool, stores)))
+            {
+                let filler = Filler {
+                    stores,
+                    pool: pool.clone(),
+                };
+                // Twice: the first finds the caches as another way has left them.
+                filler.fill(image);
+                let start = Instant::now();
+                filler.fill(image);
+                let time = start.elapsed();
+                if time < least {
+                    (fastest, least) = (filler, time);
+                }
+            }
+        }
+        Ok(fastest)
+    }
+
+    fn fill(&self, image: &mut Image) {
+        let color = std::hint::black_box([0.8, 0.8, 0.8]);
+        fill(
+            image.samples_mut(),
+            color,
+            self.stores,
+            self.pool.as_deref(),
+        );
+        std::hint::black_box(image.samples());
+    }
+
+    /// How it fills, for people.
+    pub(super) fn how(&self) -> String {
+        let threads = self
+            .pool
+            .as_ref()
+            .map_or(1, |pool| pool.current_num_threads());
+        let s = if threads == 1 { "" } else { "s" };
+        format!("{} stores, {threads} thread{s}", self.stores)
+    }
+}
+
+/// Times `tracer` on the frames at `angles`, in turn with `filler`.
+///
+/// A sample is a whole round: all frames in order, on one tracer, into one picture, everything that a frame needs inside; and then
+/// filling the picture as often.
+pub(super) fn time(
+    tracer: &mut Tracer,
+    threads: usize,
+    (scene, stage, angles): (&Scene, Stage, &[f64]),
+    image: &mut Image,
+    filler: &Filler,
+) -> Result<Option<Timing>, TraceError> {
+    // One frame that does not count: what is made at first use is made.
+    if let Some(&alpha) = angles.first() {
+        tracer.trace(scene, stage, alpha, image)?;
+    }
+    let (mut ms, mut fill_ms, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    let count = angles.len() as f64;
+    let begin = Instant::now();
+    while ms.len() < MIN_SAMPLES || (begin.elapsed() < TIME && ms.len() < MAX_SAMPLES) {
+        let start = Instant::now();
+        for &alpha in angles {
+            tracer.trace(scene, stage, alpha, image)?;
+        }
+        let round = start.elapsed().as_secs_f64();
+        std::hint::black_box(image.samples());
+
+        let start = Instant::now();
+        for _ in angles {
+            filler.fill(image);
+        }
+        // A clock that stood still must not make a ratio infinite.
+        let fills = start.elapsed().as_secs_f64().max(1e-9);
+
+        ms.push(1e3 * round / count);
+        fill_ms.push(1e3 * fills / count);
+        ratios.push(round / fills);
+    }
+    let samples = ms.len();
+    let simd = match tracer.kernel() {
+        Kernel::Exact => tracer.simd().name(),
+        // These go pixel by pixel.
+        Kernel::Fast | Kernel::Double | Kernel::Listing | Kernel::Reference => "none",
+    };
+    let spreads = (Spread::of(ms), Spread::of(fill_ms), Spread::of(ratios));
+    let (Some(ms), Some(fill_ms), Some(fill_ratio)) = spreads else {
+        return Ok(None);
+    };
+    Ok(Some(Timing {
+        threads,
+        simd,
+        samples,
+        ms,
+        fill_ms,
+        fill_ratio,
+        retained_fill_ratio: None,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_median_is_the_middle() {
+        let spread = |values: &[f64]| Spread::of(values.to_vec()).map(|s| (s.median, s.min, s.max));
+        assert_eq!(spread(&[]), None);
+        assert_eq!(spread(&[2.0]), Some((2.0, 2.0, 2.0)));
+        assert_eq!(spread(&[9.0, 1.0, 2.0]), Some((2.0, 1.0, 9.0)));
+        assert_eq!(spread(&[9.0, 1.0, 2.0, 4.0]), Some((3.0, 1.0, 9.0)));
+    }
+}

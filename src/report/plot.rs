@@ -1,0 +1,314 @@
+//! Error against time, as an SVG.
+//!
+//! A panel for each group of scenes, a mark for each kernel: on the way across, its time on one thread; on the way up, the mean error
+//! of its samples in f32 steps, wrong pixels included, with a line from there to the largest: the scenes differ in brightness by many orders of
+//! magnitude, and steps do not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels differ
+//! in shape, so that the plot reads in grey, and in colours that the colour-blind can tell apart (Okabe and Ito).
+
+mod axis;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Group, Measured, Report, Row, Spread};
+use crate::Kernel;
+use axis::{ErrorAxis, TimeAxis};
+
+/// A plot that cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+#[error("the plot cannot be drawn: {0}")]
+pub struct PlotError(String);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+const PANEL: (u32, u32) = (680, 420);
+const TITLE: u32 = 58;
+const LEGEND: u32 = 64;
+
+const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+
+/// A kernel in a panel.
+struct Mark {
+    kernel: Kernel,
+    ms: Spread,
+    mean: f64,
+    largest: f64,
+    /// Time and mean error of each scene and stage, where they are more than one.
+    each: Vec<(f64, f64)>,
+}
+
+struct Panel {
+    title: String,
+    marks: Vec<Mark>,
+    fill_ms: f64,
+}
+
+impl Report {
+    /// The plot as the text of an SVG file.
+    ///
+    /// # Errors
+    /// [`PlotError`] where it cannot be drawn.
+    pub fn plot(&self) -> Result<String, PlotError> {
+        let panels: Vec<Panel> = [Group::Builtin, Group::File, Group::Hard]
+            .into_iter()
+            .filter_map(|group| self.panel(group))
+            .collect();
+        let mut text = String::new();
+        self.draw(&panels, &mut text)
+            .map_err(|error| PlotError(error.to_string()))?;
+        Ok(text)
+    }
+
+    fn draw(&self, panels: &[Panel], text: &mut String) -> Drawn {
+        let count = panels.len().max(1);
+        let (width, height) = (PANEL.0 * count as u32, TITLE + PANEL.1 + LEGEND);
+        let area = SVGBackend::with_string(text, (width, height)).into_drawing_area();
+        area.fill(&WHITE)?;
+        let middle = width as i32 / 2;
+        let on = format!(
+            "one thread of {}; {} × {} pixels, frames {}..{}",
+            self.machine.cpu,
+            self.size,
+            self.size,
+            self.frames.start(),
+            self.frames.end()
+        );
+        area.draw(&Text::new(
+            "Error against time",
+            (middle, 10),
+            font(20, HPos::Center),
+        ))?;
+        area.draw(&Text::new(on, (middle, 36), font(13, HPos::Center)))?;
+        let axes = axes(panels);
+        let places = area.split_vertically(TITLE).1.split_vertically(PANEL.1).0;
+        for (panel, place) in panels.iter().zip(places.split_evenly((1, count))) {
+            draw_panel(panel, &area, &place, axes)?;
+        }
+        draw_legend(panels, &area, (middle, (TITLE + PANEL.1) as i32))?;
+        area.present()
+    }
+
+    /// What is known about a group of scenes; `None` if nothing.
+    fn panel(&self, group: Group) -> Option<Panel> {
+        let rows: Vec<(&Row, &Measured)> = self
+            .rows
+            .iter()
+            .filter(|row| row.group == group)
+            .filter_map(|row| Some((row, row.measured.as_ref().ok()?)))
+            .collect();
+        let marks: Vec<Mark> = Kernel::ALL
+            .into_iter()
+            .filter_map(|kernel| {
+                let of_kernel = rows.iter().filter(|(row, _)| row.kernel == kernel);
+                mark(kernel, of_kernel.map(|&(_, measured)| measured))
+            })
+            .collect();
+        let fills = rows
+            .iter()
+            .filter_map(|(_, measured)| measured.timings.first());
+        let fill_ms = Spread::of(fills.map(|timing| timing.fill_ms.median).collect())?.median;
+        let mut scenes: Vec<&str> = rows.iter().map(|(row, _)| &row.scene[..]).collect();
+        scenes.dedup();
+        let title = match (group, &scenes[..]) {
+            (Group::Builtin, _) => "Built-in scene".to_owned(),
+            (Group::File, [scene]) => (*scene).to_owned(),
+            (Group::File, _) => format!("{} scene files", scenes.len()),
+            (Group::Hard, _) => format!("{} hard scenes", scenes.len()),
+        };
+        Some(Panel {
+            title,
+            marks,
+            fill_ms,
+        })
+    }
+}
+
+/// One kernel on all scenes of a group: the median time and how far it spreads, the mean of the mean errors, the largest of the largest.
+fn mark<'a>(kernel: Kernel, measured: impl Iterator<Item = &'a Measured>) -> Option<Mark> {
+    let (mut each, mut largest, mut spread) = (Vec::new(), 0.0_f64, None);
+    for Measured { timings, errors } in measured {
+        let timing = timings.first()?;
+        each.push((timing.ms.median, errors.all.mean_steps()));
+        largest = largest.max(f64::from(errors.all.max_steps));
+        spread = Some(timing.ms);
+    }
+    let mean = each.iter().map(|(_, mean)| mean).sum::<f64>() / each.len() as f64;
+    if each.len() > 1 {
+        spread = Spread::of(each.iter().map(|&(ms, _)| ms).collect());
+    } else {
+        each.clear();
+    }
+    Some(Mark {
+        kernel,
+        ms: spread?,
+        mean,
+        largest,
+        each,
+    })
+}
+
+/// Axes that all panels share, so that they can be compared.
+fn axes(panels: &[Panel]) -> (TimeAxis, ErrorAxis) {
+    let marks = || panels.iter().flat_map(|panel| &panel.marks);
+    let times = marks().flat_map(|mark| [mark.ms.min, mark.ms.max]);
+    let errors = marks().flat_map(|mark| {
+        let each = mark.each.iter().map(|&(_, mean)| mean);
+        each.chain([mark.mean, mark.largest])
+    });
+    (
+        TimeAxis::over(times.chain(panels.iter().map(|panel| panel.fill_ms))),
+        ErrorAxis::over(errors),
+    )
+}
+
+fn font(size: u32, horizontal: HPos) -> TextStyle<'static> {
+    ("sans-serif", size)
+        .into_font()
+        .color(&INK)
+        .pos(Pos::new(horizontal, VPos::Top))
+}
+
+fn draw_panel(
+    panel: &Panel,
+    whole: &Area<'_>,
+    place: &Area<'_>,
+    (times, errors): (TimeAxis, ErrorAxis),
+) -> Drawn {
+    let mut chart = ChartBuilder::on(place)
+        .caption(&panel.title, font(16, HPos::Center))
+        .margin(8)
+        .margin_right(20)
+        .x_label_area_size(46)
+        .y_label_area_size(68)
+        .build_cartesian_2d(times, errors)?;
+    chart
+        .configure_mesh()
+        .bold_line_style(GRID)
+        .light_line_style(TRANSPARENT)
+        .axis_style(INK)
+        .label_style(("sans-serif", 13).into_font().color(&INK))
+        .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
+        .x_desc("time a frame, ms")
+        .y_desc("error of a sample, f32 steps")
+        .draw()?;
+    let pixel = |time: f64, error: f64| chart.backend_coord(&(time, error));
+
+    let high = errors.upper_end();
+    let (x, top) = pixel(panel.fill_ms, high);
+    let (_, pixels) = chart.plotting_area().get_pixel_range();
+    dashes(whole, x, (top, pixels.end))?;
+    // Below and behind, what the marks sum up.
+    for mark in &panel.marks {
+        let pale = color(mark.kernel).mix(0.5);
+        for &(time, error) in &mark.each {
+            shape(
+                whole,
+                mark.kernel,
+                pixel(time, error),
+                1,
+                pale.stroke_width(1),
+            )?;
+        }
+    }
+    for Mark {
+        kernel,
+        ms,
+        mean,
+        largest,
+        ..
+    } in &panel.marks
+    {
+        let line = color(*kernel).stroke_width(2);
+        let (x, y) = pixel(ms.median, *mean);
+        let (left, right) = (pixel(ms.min, *mean).0, pixel(ms.max, *mean).0);
+        let top = pixel(ms.median, largest.min(high)).1;
+        whole.draw(&PathElement::new(vec![(left, y), (right, y)], line))?;
+        for end in [left, right] {
+            whole.draw(&PathElement::new(vec![(end, y - 4), (end, y + 4)], line))?;
+        }
+        if top < y {
+            whole.draw(&PathElement::new(vec![(x, y), (x, top)], line))?;
+            whole.draw(&PathElement::new(vec![(x - 5, top), (x + 5, top)], line))?;
+        }
+        shape(whole, *kernel, (x, y), 2, line)?;
+    }
+    Ok(())
+}
+
+/// The line of fill.
+fn dashes(area: &Area<'_>, x: i32, (top, bottom): (i32, i32)) -> Drawn {
+    for y in (top..bottom).step_by(10) {
+        let dash = vec![(x, y), (x, (y + 6).min(bottom))];
+        area.draw(&PathElement::new(dash, INK.stroke_width(2)))?;
+    }
+    Ok(())
+}
+
+/// The colours of Okabe and Ito that are dark enough on white.
+fn color(kernel: Kernel) -> RGBColor {
+    match kernel {
+        Kernel::Exact => RGBColor(0x00, 0x72, 0xb2),
+        Kernel::Fast => RGBColor(0xd5, 0x5e, 0x00),
+        Kernel::Double => RGBColor(0x00, 0x9e, 0x73),
+        Kernel::Listing => RGBColor(0xcc, 0x79, 0xa7),
+        Kernel::Reference => RGBColor(0x00, 0x00, 0x00),
+    }
+}
+
+/// The outline of a kernel's shape around (`x`, `y`), `parts` halves of its size. Of different sizes, they can be told apart where they coincide.
+fn shape(
+    area: &Area<'_>,
+    kernel: Kernel,
+    (x, y): (i32, i32),
+    parts: i32,
+    line: ShapeStyle,
+) -> Drawn {
+    let corners = match kernel {
+        Kernel::Exact => return area.draw(&Circle::new((x, y), 4 * parts, line)),
+        Kernel::Fast => [(0, -4), (4, 3), (-4, 3), (0, -4), (4, 3)],
+        Kernel::Double => [(-2, -2), (2, -2), (2, 2), (-2, 2), (-2, -2)],
+        Kernel::Listing => [(-3, -3), (3, 3), (0, 0), (3, -3), (-3, 3)],
+        Kernel::Reference => [(0, -5), (5, 0), (0, 5), (-5, 0), (0, -5)],
+    };
+    let corners = corners.map(|(dx, dy)| (x + dx * parts, y + dy * parts));
+    area.draw(&PathElement::new(corners, line))
+}
+
+/// Shapes and what they stand for, in the middle below the panels.
+fn draw_legend(panels: &[Panel], area: &Area<'_>, (middle, top): (i32, i32)) -> Drawn {
+    const ENTRY: i32 = 108;
+    const LAST: i32 = 150;
+    let is_there = |kernel: &Kernel| {
+        let mut marks = panels.iter().flat_map(|panel| &panel.marks);
+        marks.any(|mark| mark.kernel == *kernel)
+    };
+    let kernels: Vec<Kernel> = Kernel::ALL.into_iter().filter(is_there).collect();
+    let (mut x, y) = (middle - (ENTRY * kernels.len() as i32 + LAST) / 2, top + 14);
+    for kernel in kernels {
+        shape(area, kernel, (x, y), 2, color(kernel).stroke_width(2))?;
+        area.draw(&Text::new(
+            kernel.name(),
+            (x + 14, y - 7),
+            font(14, HPos::Left),
+        ))?;
+        x += ENTRY;
+    }
+    dashes(area, x, (y - 10, y + 10))?;
+    area.draw(&Text::new(
+        "fill with one colour",
+        (x + 14, y - 7),
+        font(14, HPos::Left),
+    ))?;
+    let mut marks = panels.iter().flat_map(|panel| &panel.marks);
+    let small = match marks.any(|mark| !mark.each.is_empty()) {
+        true => "; small: a single scene",
+        false => "",
+    };
+    let text = format!(
+        "mark: median time and mean error; across: least and most time; up: to the largest error{small}"
+    );
+    area.draw(&Text::new(text, (middle, top + 36), font(13, HPos::Center)))
+}

@@ -1,0 +1,480 @@
+//! Promise: `firsthit report` counts what is wrong as it is, says it to people and to programs, draws it, and leaves no half file.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test stops at the first surprise"
+)]
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use firsthit::camera::frame_angle;
+use firsthit::report::{Errors, HARD_SCENES, NamedScene, WrongPixels};
+use firsthit::tracer::{Decision, InDoubt, Seen};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn program(folder: &TempDir, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_firsthit"));
+    command
+        .current_dir(folder)
+        .arg("report")
+        .args(line.split_whitespace());
+    command
+}
+
+/// What `firsthit report` with the words of `line` printed; it must have succeeded and said nothing else.
+fn report(folder: &TempDir, line: &str) -> String {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = program(folder, line).output().unwrap();
+    let message = String::from_utf8(stderr).unwrap();
+    assert_eq!((status.code(), &message[..]), (Some(0), ""), "{line}");
+    String::from_utf8(stdout).unwrap()
+}
+
+/// What it said when it failed with `status`.
+fn failed(folder: &TempDir, line: &str, status: i32) -> String {
+    let output = program(folder, line).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(status), "{line}: {message}");
+    assert!(output.stdout.is_empty(), "{line}");
+    message
+}
+
+fn read(folder: &TempDir, name: &str) -> String {
+    std::fs::read_to_string(folder.path().join(name)).unwrap()
+}
+
+fn json(folder: &TempDir, name: &str) -> Value {
+    serde_json::from_str(&read(folder, name)).unwrap()
+}
+
+fn is_empty(folder: &TempDir) -> bool {
+    folder.path().read_dir().unwrap().next().is_none()
+}
+
+const SPHERE: Seen = Seen {
+    solid: 0,
+    face: None,
+    in_shadow: false,
+};
+const FACE: Seen = Seen {
+    solid: 2,
+    face: Some(1),
+    in_shadow: false,
+};
+
+#[test]
+fn a_wrong_pixel_is_counted_by_the_first_thing_that_is_wrong() {
+    use Decision::{Background, Mirrored, Quadrant, Solid, Surface, SurfaceInShadow};
+    let dark = |seen| Seen {
+        in_shadow: true,
+        ..seen
+    };
+    let face = |face| Seen {
+        face: Some(face),
+        ..FACE
+    };
+    let kinds = [
+        // Right: not counted.
+        (Solid(FACE), Solid(FACE), [0, 0, 0, 0]),
+        (Mirrored(SPHERE), Mirrored(SPHERE), [0, 0, 0, 0]),
+        // Another thing, whatever else is wrong with it.
+        (Background, Solid(SPHERE), [1, 0, 0, 0]),
+        (Solid(dark(FACE)), Solid(SPHERE), [1, 0, 0, 0]),
+        (Surface, Solid(SPHERE), [1, 0, 0, 0]),
+        (Mirrored(SPHERE), Solid(SPHERE), [1, 0, 0, 0]),
+        (Background, SurfaceInShadow, [1, 0, 0, 0]),
+        (Quadrant(0), Quadrant(1), [1, 0, 0, 0]),
+        // Another face, in shadow or not.
+        (Solid(face(3)), Solid(FACE), [0, 1, 0, 0]),
+        (Solid(dark(face(3))), Solid(FACE), [0, 1, 0, 0]),
+        // Shadows, on solids and on the surface.
+        (Solid(dark(FACE)), Solid(FACE), [0, 0, 1, 0]),
+        (SurfaceInShadow, Surface, [0, 0, 1, 0]),
+        (Mirrored(SPHERE), SurfaceInShadow, [0, 0, 1, 0]),
+        // What the surface mirrors.
+        (Surface, Mirrored(SPHERE), [0, 0, 0, 1]),
+        (Mirrored(FACE), Mirrored(SPHERE), [0, 0, 0, 1]),
+        (Mirrored(face(0)), Mirrored(FACE), [0, 0, 0, 1]),
+        (Mirrored(dark(SPHERE)), Mirrored(SPHERE), [0, 0, 0, 1]),
+    ];
+    for (decision, truth, expected) in kinds {
+        for (decision, truth) in [(decision, truth), (truth, decision)] {
+            let mut wrong = WrongPixels::default();
+            wrong.add(decision, truth);
+            let WrongPixels {
+                solid,
+                face,
+                shadow,
+                mirror,
+            } = wrong;
+            assert_eq!(
+                [solid, face, shadow, mirror],
+                expected,
+                "{decision:?} for {truth:?}"
+            );
+            assert_eq!(wrong.total(), expected.iter().sum::<u64>());
+        }
+    }
+}
+
+#[test]
+fn known_errors_are_counted_as_they_are() {
+    let truth = Image::new(2).unwrap();
+    let true_decisions = [Decision::Background; 4];
+    let mut image = truth.clone();
+    // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel 2: a NaN.
+    image.samples_mut()[1] = f32::from_bits(3);
+    image.samples_mut()[4] = 0.75;
+    image.samples_mut()[8] = f32::NAN;
+    let mut decisions = true_decisions;
+    decisions[1] = Decision::Surface;
+    let in_doubt = InDoubt {
+        double_double: 5,
+        arbitrary: 1,
+    };
+    let mut errors = Errors::default();
+    for _ in 0..2 {
+        errors.add((&image, &decisions), (&truth, &true_decisions), in_doubt);
+    }
+    // Two frames: everything twice, the largest and the means once.
+    assert_eq!(errors.wrong_pixels.total(), 2);
+    assert_eq!((errors.all.samples, errors.all.wrong), (24, 6));
+    assert_eq!(errors.all.max_abs, 0.75);
+    assert_eq!(errors.all.nans, [2, 0]);
+    assert_eq!(errors.all.eight_bit, 2);
+    let mean = (0.75 + f64::from(f32::from_bits(3))) / 11.0;
+    assert!((errors.all.mean_abs() - mean).abs() < 1e-15);
+    // Steps are counted where the decision is right.
+    let rightly = &errors.decided_rightly;
+    assert_eq!(
+        (rightly.samples, rightly.wrong, rightly.max_steps),
+        (18, 4, 3)
+    );
+    assert_eq!(rightly.mean_steps(), 3.0 / 8.0);
+    assert_eq!(
+        (errors.in_doubt.double_double, errors.in_doubt.arbitrary),
+        (10, 2)
+    );
+}
+
+/// The errors of a kernel over the first two frames of the built-in scene at N = 24, counted without the report.
+fn counted(kernel: Kernel) -> (u64, u64) {
+    let (mut wrong, mut misrounded) = (0, 0);
+    for alpha in [0, 1].map(frame_angle) {
+        let trace = |kernel| {
+            let mut image = Image::new(24).unwrap();
+            let mut tracer = Tracer::new(kernel, 1).unwrap();
+            let decisions = tracer
+                .trace_with_decisions(&Scene::builtin(), Stage::Reflection, alpha, &mut image)
+                .unwrap();
+            (image, decisions)
+        };
+        let (image, decisions) = trace(kernel);
+        let (truth, true_decisions) = trace(Kernel::Exact);
+        wrong += decisions
+            .iter()
+            .zip(&true_decisions)
+            .filter(|(a, b)| a != b)
+            .count() as u64;
+        let samples = image.samples().iter().zip(truth.samples());
+        misrounded += samples.filter(|(a, b)| a.to_bits() != b.to_bits()).count() as u64;
+    }
+    (wrong, misrounded)
+}
+
+const ALL: &str =
+    "--kernel exact --kernel fast --kernel double --kernel listing --kernel reference";
+
+#[test]
+fn the_json_is_as_promised() {
+    let folder = tempfile::tempdir().unwrap();
+    report(
+        &folder,
+        &format!("--size 24 --frames 0..1 --threads 2 --json r.json {ALL}"),
+    );
+    let report = json(&folder, "r.json");
+    assert_eq!(report["version"], 1);
+    for key in [
+        "cpu", "features", "simd", "threads", "cores", "version", "commit",
+    ] {
+        assert!(report["machine"].get(key).is_some(), "{key}");
+    }
+    let rows = report["rows"].as_array().unwrap();
+    let kinds: Vec<_> = rows
+        .iter()
+        .map(|row| {
+            (
+                row["kernel"].as_str().unwrap(),
+                row["threads"].as_u64().unwrap(),
+            )
+        })
+        .collect();
+    let expected: Vec<_> = Kernel::ALL
+        .iter()
+        .flat_map(|kernel| [1, 2].map(|threads| (kernel.name(), threads)))
+        .collect();
+    assert_eq!(kinds, expected);
+    for row in rows {
+        assert_eq!(row["scene"], "builtin");
+        assert_eq!(
+            (&row["stage"], &row["size"], &row["frames"]),
+            (&6.into(), &24.into(), &2.into())
+        );
+        assert!(row["simd"].is_string());
+        for key in ["ms", "fill_ratio"] {
+            let [min, median, max] =
+                ["min", "median", "max"].map(|end| row[key][end].as_f64().unwrap());
+            assert!(0.0 < min && min <= median && median <= max, "{key}: {row}");
+        }
+        // The tracer cannot retain yet.
+        assert!(row.get("retained_fill_ratio").unwrap().is_null());
+        for key in ["mean_ulp", "max_abs"] {
+            assert!(row[key].is_f64(), "{key}: {row}");
+        }
+        for key in ["max_ulp", "eight_bit_differences", "pixels_in_doubt"] {
+            assert!(row[key].is_u64(), "{key}: {row}");
+        }
+        let name = row["kernel"].as_str().unwrap();
+        let kernel = Kernel::ALL
+            .into_iter()
+            .find(|kernel| kernel.name() == name)
+            .unwrap();
+        let (wrong, misrounded) = counted(kernel);
+        assert_eq!(
+            (&row["wrong_pixels"], &row["misrounded"]),
+            (&wrong.into(), &misrounded.into()),
+            "{name}"
+        );
+        match kernel {
+            Kernel::Exact | Kernel::Reference => assert_eq!(wrong + misrounded, 0),
+            Kernel::Fast => assert!(misrounded > 0),
+            Kernel::Listing => assert!(wrong > 0),
+            Kernel::Double => {}
+        }
+    }
+    let pipeline = report["pipeline"].as_array().unwrap();
+    let ways: Vec<_> = pipeline
+        .iter()
+        .map(|way| [&way["context"], &way["path"]])
+        .collect();
+    let all = [
+        ["egl", "texture"],
+        ["egl", "glDrawPixels"],
+        ["osmesa", "texture"],
+        ["osmesa", "glDrawPixels"],
+    ];
+    assert!(
+        ways.iter().zip(all).all(|(way, expected)| *way == expected),
+        "{ways:?}"
+    );
+    for way in pipeline {
+        for key in ["upload_ms", "draw_ms", "readback_ms"] {
+            let measured = way[key].is_f64() && way["missing"].is_null();
+            let missing = way[key].is_null() && way["missing"].is_string();
+            assert!(measured || missing, "{way}");
+        }
+    }
+}
+
+#[test]
+fn the_table_has_every_row_and_no_line_longer_than_another_of_its_kind() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = report(
+        &folder,
+        "--size 8 --frames 3..3 --threads 1 --stage 1 --stage 5",
+    );
+    for stage in ["1", "5"] {
+        for kernel in ["exact", "fast", "double", "listing"] {
+            let rows = table.lines().filter(|line| {
+                line.split_whitespace()
+                    .take(3)
+                    .eq(["builtin", stage, kernel])
+            });
+            // Once among the times, once among the errors, and its numbers end where their columns do.
+            let widths: Vec<usize> = rows.map(|row| row.chars().count()).collect();
+            assert_eq!(widths.len(), 2, "{stage} {kernel}\n{table}");
+        }
+    }
+    let widths: BTreeSet<usize> = table
+        .lines()
+        .filter(|line| line.starts_with("builtin"))
+        .map(|line| line.chars().count())
+        .collect();
+    assert_eq!(widths.len(), 2, "{table}");
+    assert!(!table.contains("2 threads"), "{table}");
+}
+
+#[test]
+fn the_plot_is_xml_and_shows_every_kernel_and_every_group() {
+    let folder = tempfile::tempdir().unwrap();
+    // A name that XML would take for something else.
+    let name = "a&b<c>.toml";
+    std::fs::write(folder.path().join(name), HARD_SCENES[0].1).unwrap();
+    report(
+        &folder,
+        &format!(
+            "--size 8 --frames 1..1 --threads 1 --scene {name} --scene {name} --plot p.svg {ALL}"
+        ),
+    );
+    let text = read(&folder, "p.svg");
+    let plot = roxmltree::Document::parse(&text).unwrap();
+    let texts: Vec<&str> = plot
+        .descendants()
+        .filter(|node| node.has_tag_name("text"))
+        .filter_map(|node| node.text())
+        .map(str::trim)
+        .collect();
+    for kernel in Kernel::ALL {
+        // The listing refuses this scene.
+        assert_eq!(
+            texts.contains(&kernel.name()),
+            kernel != Kernel::Listing,
+            "{texts:?}"
+        );
+    }
+    for label in [
+        name,
+        "Error against time",
+        "time a frame, ms",
+        "error of a sample, f32 steps",
+        "fill with one colour",
+        "0",
+    ] {
+        assert!(texts.contains(&label), "{label} in {texts:?}");
+    }
+}
+
+#[test]
+fn a_scene_that_a_kernel_refuses_is_a_row_that_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), "background = [0.5, 0.5, 0.5]").unwrap();
+    let table = report(
+        &folder,
+        "--scene s.toml --size 8 --frames 0..0 --threads 1 --kernel listing --kernel double --json r.json --plot p.svg",
+    );
+    let refused = table.lines().filter(|line| line.contains("refused"));
+    assert_eq!(refused.count(), 3, "{table}");
+    let report = json(&folder, "r.json");
+    let rows = report["rows"].as_array().unwrap();
+    assert!(
+        rows[0]["refused"]
+            .as_str()
+            .unwrap()
+            .contains("2 spheres, 1 tetrahedron")
+    );
+    assert!(rows[0]["ms"].is_null() && rows[0]["wrong_pixels"].is_null());
+    assert_eq!(
+        (&rows[1]["kernel"], &rows[1]["wrong_pixels"]),
+        (&"double".into(), &0.into())
+    );
+    // Nothing at all to draw is a plot all the same.
+    report_nothing(&folder);
+}
+
+fn report_nothing(folder: &TempDir) {
+    report(
+        folder,
+        "--scene s.toml --size 8 --frames 0..0 --threads 1 --kernel listing --plot p.svg",
+    );
+    roxmltree::Document::parse(&read(folder, "p.svg")).unwrap();
+}
+
+#[test]
+fn the_hard_scenes_are_those_of_the_stability_suite() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes");
+    let mut files: Vec<(String, String)> = folder
+        .read_dir()
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .map(|path| {
+            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+            (name, std::fs::read_to_string(path).unwrap())
+        })
+        .collect();
+    files.sort();
+    let listed = HARD_SCENES
+        .iter()
+        .map(|&(name, text)| (name.to_owned(), text.to_owned()));
+    assert!(listed.eq(files));
+    // Each of them is a scene.
+    assert_eq!(NamedScene::hard().count(), HARD_SCENES.len());
+}
+
+#[test]
+fn hard_scenes_join_the_built_in_one() {
+    let folder = tempfile::tempdir().unwrap();
+    report(
+        &folder,
+        "--hard --size 2 --frames 0..0 --threads 1 --kernel double --json r.json --plot p.svg",
+    );
+    let report = json(&folder, "r.json");
+    let rows = report["rows"].as_array().unwrap();
+    let scenes = rows.iter().map(|row| row["scene"].as_str().unwrap());
+    let expected = HARD_SCENES.iter().map(|&(name, _)| name);
+    assert!(scenes.eq(std::iter::once("builtin").chain(expected)));
+    let plot = read(&folder, "p.svg");
+    let hard = format!("{} hard scenes", HARD_SCENES.len());
+    assert!(plot.contains("Built-in scene") && plot.contains(&hard));
+}
+
+/// What SIGINT leaves while the report is being measured: nothing.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_no_file() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = program(&folder, "--frames 0..20000 --json r.json --plot p.svg")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    assert!(child.try_wait().unwrap().is_none(), "it is measuring");
+    let kill = format!("kill -INT {}", child.id());
+    let killed = Command::new("sh").args(["-c", &kill]).status().unwrap();
+    assert!(killed.success());
+    let status = child.wait().unwrap();
+    assert_eq!(status.signal(), Some(2), "{status}");
+    assert!(is_empty(&folder));
+}
+
+#[test]
+fn wrong_usage_is_2_and_failure_is_1_with_one_line_before_anything_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in [
+        "--plot p.png",
+        "--plot p",
+        "--json p.svg --plot p.svg",
+        "--stage 8",
+        "--size 0",
+        "--frames 3..2",
+        "--kernel quick",
+        "--threads 0",
+        "file",
+    ] {
+        failed(&folder, line, 2);
+    }
+    // Too many frames to be measured before the failure is noticed.
+    for (line, says) in [
+        ("--json none/r.json", "none/r.json: cannot be written"),
+        ("--plot none/p.svg", "none/p.svg: cannot be written"),
+        ("--json .", ".: this is a folder"),
+        ("--scene none.toml", "none.toml: cannot be read"),
+    ] {
+        let message = failed(&folder, &format!("{line} --frames 0..20000"), 1);
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(
+            message.starts_with(&format!("firsthit: {says}")),
+            "{message}"
+        );
+    }
+    assert!(is_empty(&folder));
+}
