@@ -54,13 +54,18 @@ impl Report {
     fn head(&self) -> String {
         let machine = &self.machine;
         let commit = machine.commit.as_deref().unwrap_or("unknown commit");
-        let simd = self
-            .timings()
-            .map(|timing| timing.simd)
-            .next()
-            .unwrap_or("none");
+        let mut levels = Vec::new();
+        for row in &self.rows {
+            let level = row
+                .measured
+                .as_ref()
+                .ok()
+                .and_then(|measured| measured.timings.first());
+            let level = level.map(|timing| format!("{} {}", row.kernel.name(), timing.simd));
+            levels.extend(level.filter(|level| !levels.contains(level)));
+        }
         let mut text = format!(
-            "firsthit {} ({commit}){} on {}, {} cores, {} {}; SIMD level {simd}\n{} × {} pixels, frames {}..{}\n",
+            "firsthit {} ({commit}){} on {}, {} cores, {} {}\nSIMD level: {}\n{} × {} pixels, frames {}..{}\n",
             machine.version,
             if machine.debug_build {
                 ", a debug build: its times mean little,"
@@ -71,6 +76,7 @@ impl Report {
             machine.cores,
             machine.os,
             machine.architecture,
+            levels.join(", "),
             self.size,
             self.size,
             self.frames.start(),
