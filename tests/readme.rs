@@ -7,6 +7,7 @@ use std::path::Path;
 
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
+use firsthit::report::HARD_SCENES;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer, viewer};
 
 /// The pictures under tests/images, each a stage at a frame of the animation.
@@ -68,4 +69,28 @@ fn its_worked_pixel_is_what_explain_says() {
     let readme = fs::read_to_string(file("README.md")).unwrap();
     let indented: String = text.lines().map(|line| format!("    {line}\n")).collect();
     assert!(readme.contains(&indented), "{indented}");
+}
+
+#[test]
+fn its_plot_is_drawn_by_this_program() {
+    let text = fs::read_to_string(file("tests/images/error-against-time.svg")).unwrap();
+    let plot = roxmltree::Document::parse(&text).unwrap();
+    let texts: Vec<&str> = plot
+        .descendants()
+        .filter_map(|node| node.text())
+        .map(str::trim)
+        .collect();
+    let hard = format!("{} hard scenes", HARD_SCENES.len());
+    for label in [
+        "Built-in scene",
+        &hard,
+        "exact",
+        "fast",
+        "double",
+        "listing",
+    ] {
+        assert!(texts.contains(&label), "{label}");
+    }
+    let readme = fs::read_to_string(file("README.md")).unwrap();
+    assert!(readme.contains("(tests/images/error-against-time.svg)"));
 }
