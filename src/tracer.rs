@@ -28,9 +28,9 @@ use rayon::prelude::*;
 
 use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
-use ladder::{Ladder, Pixels, Plain, Rung};
+use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
-use rows::{Rows, Scratch};
+use rows::{Precision, Rows, Scratch};
 pub use simd::Simd;
 
 /// How numbers are computed.
@@ -39,9 +39,9 @@ pub enum Kernel {
     /// Every decision as in exact arithmetic, every sample the true value correctly rounded.
     #[default]
     Exact,
-    /// f32 through and through: careful formulas, no bounds, no safety net.
+    /// Every pixel in f32: careful formulas, no bounds, no safety net. Where borders cross a row is computed once a row, in f64.
     Fast,
-    /// f64 through and through, rounded to f32 once at the end.
+    /// The same in f64, rounded to f32 once at the end.
     Double,
     /// The document's listings as printed, slips included: the baseline. Two spheres, one tetrahedron and a surface only.
     Listing,
@@ -134,6 +134,12 @@ impl InDoubt {
             arbitrary: self.arbitrary + other.arbitrary,
         }
     }
+}
+
+/// A pixel of a kernel that goes pixel by pixel.
+fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Rung) {
+    let (traced, rung) = pixels.pixel(column, row);
+    (pixels.explain(column, row, traced), rung)
 }
 
 /// Rows are handed to threads in bands of so many.
@@ -238,15 +244,24 @@ impl Tracer {
         if column >= size || row >= size {
             return Err(TraceError::Pixel { column, row, size });
         }
+        let at = (column, row);
         let (text, rung) = match self.kernel {
             Kernel::Exact => {
-                Ladder::new(scene, stage, alpha, size, Rung::Double).explain(column, row)
+                let ladder = Ladder::new(scene, stage, alpha, size, Rung::Double);
+                self.explain_from_row(&ladder, Precision::Bounded, at)
             }
-            Kernel::Fast => Plain::<f32>::new(scene, stage, alpha, size).explain(column, row),
-            Kernel::Double => Plain::<f64>::new(scene, stage, alpha, size).explain(column, row),
-            Kernel::Listing => Listing::new(scene, stage, alpha, size)?.explain(column, row),
+            Kernel::Fast => {
+                let plain = Plain::<f32>::new(scene, stage, alpha, size);
+                self.explain_from_row(&plain, Precision::Single, at)
+            }
+            Kernel::Double => {
+                let plain = Plain::<f64>::new(scene, stage, alpha, size);
+                self.explain_from_row(&plain, Precision::Double, at)
+            }
+            Kernel::Listing => explain_pixel(&Listing::new(scene, stage, alpha, size)?, at),
             Kernel::Reference => {
-                Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble).explain(column, row)
+                let ladder = Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble);
+                explain_pixel(&ladder, at)
             }
         };
         let by = match (self.kernel, rung) {
@@ -261,6 +276,27 @@ impl Tracer {
              frame        stage {stage}, α = {alpha:?}\n{text}decided by   {by} (kernel {})\n",
             self.kernel.name()
         ))
+    }
+
+    /// The pixel as it is traced, with the rest of its row.
+    fn explain_from_row(
+        &self,
+        pixels: &impl Lines,
+        precision: Precision,
+        (column, row): (u32, u32),
+    ) -> (String, Rung) {
+        let size = pixels.bounded().size as usize;
+        let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
+        Rows::new(pixels, precision, self.simd.0).trace(
+            row,
+            &mut samples,
+            Some(&mut decisions),
+            &mut Scratch::default(),
+        );
+        let place = column as usize;
+        let color = std::array::from_fn(|channel| samples[3 * place + channel]);
+        let text = pixels.explain(column, row, (decisions[place], color));
+        (text, pixels.pixel(column, row).1)
     }
 
     fn trace_frame(
@@ -278,18 +314,15 @@ impl Tracer {
         self.in_doubt = match self.kernel {
             Kernel::Exact => {
                 let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
-                match ladder.bounded().filter(|_| stage != Stage::Image) {
-                    Some(picture) => {
-                        self.trace_rows(&Rows::new(picture, &ladder, self.simd.0), image, decisions)
-                    }
-                    None => self.trace_pixels(&ladder, image, decisions),
-                }
+                self.trace_rows(&ladder, Precision::Bounded, image, decisions)
             }
             Kernel::Fast => {
-                self.trace_pixels(&Plain::<f32>::new(scene, stage, alpha, n), image, decisions)
+                let plain = Plain::<f32>::new(scene, stage, alpha, n);
+                self.trace_rows(&plain, Precision::Single, image, decisions)
             }
             Kernel::Double => {
-                self.trace_pixels(&Plain::<f64>::new(scene, stage, alpha, n), image, decisions)
+                let plain = Plain::<f64>::new(scene, stage, alpha, n);
+                self.trace_rows(&plain, Precision::Double, image, decisions)
             }
             Kernel::Listing => {
                 self.trace_pixels(&Listing::new(scene, stage, alpha, n)?, image, decisions)
@@ -305,10 +338,12 @@ impl Tracer {
 
     fn trace_rows(
         &self,
-        rows: &Rows<'_, Ladder<'_>>,
+        pixels: &impl Lines,
+        precision: Precision,
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
     ) -> InDoubt {
+        let rows = Rows::new(pixels, precision, self.simd.0);
         let scratch = Scratch::default;
         self.each_row(
             image,

@@ -169,9 +169,9 @@ pub(super) fn time(
     }
     let samples = ms.len();
     let simd = match tracer.kernel() {
-        Kernel::Exact => tracer.simd().name(),
+        Kernel::Exact | Kernel::Fast | Kernel::Double => tracer.simd().name(),
         // These go pixel by pixel.
-        Kernel::Fast | Kernel::Double | Kernel::Listing | Kernel::Reference => "none",
+        Kernel::Listing | Kernel::Reference => "none",
     };
     let spreads = (Spread::of(ms), Spread::of(fill_ms), Spread::of(ratios));
     let (Some(ms), Some(fill_ms), Some(fill_ratio)) = spreads else {

@@ -7,7 +7,7 @@ use std::fmt::{self, Write as _};
 
 use super::decision::{Decision, Seen};
 use super::line::{Hit, Line};
-use super::pixel::Picture;
+use super::pixel::{Picture, Pixel};
 use super::vector::Vector;
 use super::view::{Reach, Solids, View};
 use crate::image::display_byte;
@@ -61,10 +61,13 @@ fn say(text: &mut String, about: &str, what: impl fmt::Display) {
 }
 
 impl<R: Real> Picture<'_, R> {
-    /// The pixel at `column` and `row`, worked through.
-    pub(super) fn explain(&self, column: u32, row: u32) -> Result<String, R::Doubt> {
-        let (decision, normal) = self.decide(column, row)?;
-        let samples = self.color(decision, normal.as_ref())?;
+    /// The pixel at `column` and `row`, worked through; `traced` is what it shows in the picture.
+    pub(super) fn explain(
+        &self,
+        column: u32,
+        row: u32,
+        (decision, samples): Pixel,
+    ) -> Result<String, R::Doubt> {
         let mut text = String::new();
         if self.stage == Stage::Image {
             let middle = Short(f64::from(self.size) / 2.0);

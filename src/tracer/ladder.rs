@@ -31,68 +31,28 @@ pub(super) trait Pixels: Sync {
     /// The pixel at `column` and `row`, and what settled it.
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung);
 
-    /// The same pixel, worked through.
-    fn explain(&self, column: u32, row: u32) -> (String, Rung);
+    /// The same pixel, worked through; `traced` is what it shows in the picture.
+    fn explain(&self, column: u32, row: u32, traced: Pixel) -> String;
 }
 
-/// Pixels whose colour the decision tells, but for spheres in the light.
-pub(super) trait Colors: Pixels {
+/// The pixels of a frame that can be traced row by row: their colour, but for spheres in the light, is told by the decision.
+pub(super) trait Lines: Pixels {
+    /// The frame as f64 with a bound knows it.
+    fn bounded(&self) -> &Picture<'_, Bounded>;
+
     /// The samples of all pixels that show what was decided.
     fn color(&self, decision: Decision) -> [f32; 3];
 }
 
-/// A kernel of one number that always answers.
-pub(super) struct Plain<'a, R>(Picture<'a, R>);
-
-impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
-    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
-        let frame = frame::<R>(alpha, size);
-        let extents = Extents::new(scene, &self::frame(alpha, size), size);
-        let bearings = |mirrored| frame.bearings(scene, mirrored);
-        let Ok(bearings) = FrameBearings::decide(mirrors(scene, stage), bearings);
-        Plain(Picture::new(
-            scene, stage, &frame, size, &bearings, &extents,
-        ))
-    }
-}
-
-impl<R: Real<Doubt = Infallible>> Plain<'_, R> {
-    fn color(&self, decision: Decision, normal: Option<Normal<R>>) -> [f32; 3] {
-        let Ok(color) = self.0.color(decision, normal.as_ref());
-        color
-    }
-}
-
-impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
-    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
-        let Ok((decision, normal)) = self.0.decide(column, row);
-        ((decision, self.color(decision, normal)), Rung::Double)
-    }
-
-    fn explain(&self, column: u32, row: u32) -> (String, Rung) {
-        let Ok(text) = self.0.explain(column, row);
-        (text, Rung::Double)
-    }
-}
-
-/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many digits as it takes.
-pub(super) struct Ladder<'a> {
-    scene: &'a Scene,
-    stage: Stage,
-    alpha: f64,
-    size: u32,
+/// What all arithmetics of a frame build on.
+struct Basis {
+    frame: Frame<Bounded>,
     bearings: FrameBearings,
     extents: Extents,
-    /// `None` where the kernel does without this rung.
-    bounded: Option<Picture<'a, Bounded>>,
-    /// Made when it is first needed.
-    double_double: OnceLock<Picture<'a, DoubleDouble>>,
-    colors: Palette,
 }
 
-impl<'a> Ladder<'a> {
-    /// A ladder that begins at the rung `lowest`.
-    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32, lowest: Rung) -> Self {
+impl Basis {
+    fn new(scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Basis {
         let bounded = frame::<Bounded>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
         let bearings = |mirrored| {
@@ -118,17 +78,93 @@ impl<'a> Ladder<'a> {
                 })
         };
         let Ok(bearings) = FrameBearings::decide(mirrors(scene, stage), bearings);
-        let extents = Extents::new(scene, &bounded, size);
-        let bounded = (lowest == Rung::Double)
-            .then(|| Picture::new(scene, stage, &bounded, size, &bearings, &extents));
+        Basis {
+            frame: bounded,
+            bearings,
+            extents: Extents::new(scene, &bounded, size),
+        }
+    }
+
+    fn picture<'a, R: Real>(
+        &self,
+        scene: &'a Scene,
+        stage: Stage,
+        frame: &Frame<R>,
+        size: u32,
+    ) -> Picture<'a, R> {
+        Picture::new(scene, stage, frame, size, &self.bearings, &self.extents)
+    }
+}
+
+/// A kernel of one number that always answers.
+pub(super) struct Plain<'a, R> {
+    bounded: Picture<'a, Bounded>,
+    picture: Picture<'a, R>,
+}
+
+impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
+    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
+        let basis = Basis::new(scene, stage, alpha, size);
+        Plain {
+            bounded: basis.picture(scene, stage, &basis.frame, size),
+            picture: basis.picture(scene, stage, &frame(alpha, size), size),
+        }
+    }
+
+    fn samples(&self, decision: Decision, normal: Option<Normal<R>>) -> [f32; 3] {
+        let Ok(color) = self.picture.color(decision, normal.as_ref());
+        color
+    }
+}
+
+impl<R: Real<Doubt = Infallible> + Sync> Lines for Plain<'_, R> {
+    fn bounded(&self) -> &Picture<'_, Bounded> {
+        &self.bounded
+    }
+
+    fn color(&self, decision: Decision) -> [f32; 3] {
+        self.samples(decision, None)
+    }
+}
+
+impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
+    fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
+        let Ok((decision, normal)) = self.picture.decide(column, row);
+        ((decision, self.samples(decision, normal)), Rung::Double)
+    }
+
+    fn explain(&self, column: u32, row: u32, traced: Pixel) -> String {
+        let Ok(text) = self.picture.explain(column, row, traced);
+        text
+    }
+}
+
+/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many digits as it takes.
+pub(super) struct Ladder<'a> {
+    scene: &'a Scene,
+    stage: Stage,
+    alpha: f64,
+    size: u32,
+    basis: Basis,
+    lowest: Rung,
+    bounded: Picture<'a, Bounded>,
+    /// Made when it is first needed.
+    double_double: OnceLock<Picture<'a, DoubleDouble>>,
+    colors: Palette,
+}
+
+impl<'a> Ladder<'a> {
+    /// A ladder that begins at the rung `lowest`.
+    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32, lowest: Rung) -> Self {
+        let basis = Basis::new(scene, stage, alpha, size);
         Ladder {
             scene,
             stage,
             alpha,
             size,
-            bearings,
-            extents,
-            bounded,
+            lowest,
+            bounded: basis.picture(scene, stage, &basis.frame, size),
+            basis,
             double_double: OnceLock::new(),
             colors: Palette::new(scene),
         }
@@ -143,10 +179,8 @@ fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
 impl<'a> Ladder<'a> {
     /// The answer of the cheapest arithmetic that has one, and which that was.
     fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
-        if let Some(Ok(answer)) = self
-            .bounded
-            .as_ref()
-            .map(|picture| question.put_to(picture))
+        if self.lowest == Rung::Double
+            && let Ok(answer) = question.put_to(&self.bounded)
         {
             return (answer, Rung::Double);
         }
@@ -161,14 +195,9 @@ impl<'a> Ladder<'a> {
     }
 
     fn picture<R: Real>(&self) -> Picture<'a, R> {
-        Picture::new(
-            self.scene,
-            self.stage,
-            &frame(self.alpha, self.size),
-            self.size,
-            &self.bearings,
-            &self.extents,
-        )
+        let frame = frame(self.alpha, self.size);
+        self.basis
+            .picture(self.scene, self.stage, &frame, self.size)
     }
 }
 
@@ -201,28 +230,25 @@ impl Question for ColorOf {
 }
 
 /// The same pixel, worked through.
-struct Explain(u32, u32);
+struct Explain(u32, u32, Pixel);
 
 impl Question for Explain {
     type Answer = String;
     fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<String, R::Doubt> {
-        picture.explain(self.0, self.1)
+        picture.explain(self.0, self.1, self.2)
     }
 }
 
-impl Colors for Ladder<'_> {
+impl Lines for Ladder<'_> {
+    fn bounded(&self) -> &Picture<'_, Bounded> {
+        &self.bounded
+    }
+
     /// They are settled once: where a face's colour lies halfway between two floats, it does so in all its pixels, and arbitrary
     /// precision takes its time to see it.
     fn color(&self, decision: Decision) -> [f32; 3] {
         let settle = || self.settle(&ColorOf(decision)).0;
         *self.colors.get(decision).get_or_init(settle)
-    }
-}
-
-impl<'a> Ladder<'a> {
-    /// The frame as f64 with a bound knows it, for a kernel that begins with that.
-    pub(super) fn bounded(&self) -> Option<&Picture<'a, Bounded>> {
-        self.bounded.as_ref()
     }
 }
 
@@ -233,7 +259,7 @@ impl Pixels for Ladder<'_> {
         ((decision, color), rung)
     }
 
-    fn explain(&self, column: u32, row: u32) -> (String, Rung) {
-        self.settle(&Explain(column, row))
+    fn explain(&self, column: u32, row: u32, traced: Pixel) -> String {
+        self.settle(&Explain(column, row, traced)).0
     }
 }

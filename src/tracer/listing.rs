@@ -245,9 +245,8 @@ impl Pixels for Listing<'_> {
     }
 
     /// Its steps are in the listings: what came out is all there is to say.
-    fn explain(&self, column: u32, row: u32) -> (String, Rung) {
-        let ((decision, samples), rung) = self.pixel(column, row);
-        (explain::outcome(self.scene, decision, samples), rung)
+    fn explain(&self, _: u32, _: u32, (decision, samples): Pixel) -> String {
+        explain::outcome(self.scene, decision, samples)
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod ball;
 mod lanes;
+mod plain;
 mod shape;
 mod solids;
 mod span;
@@ -15,11 +16,12 @@ use fearless_simd::{Level, dispatch};
 
 use super::InDoubt;
 use super::decision::Decision;
-use super::ladder::{Colors, Pixels};
-use super::pixel::{self, Picture};
+use super::ladder::{Lines, Pixels};
+use super::pixel::{self, Picture, quadrant};
 use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
+use crate::stage::Stage;
 use lanes::{Run, Shade};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
 use solids::{Body, Facet, Pair, Solid, Solids};
@@ -34,6 +36,19 @@ pub(super) struct Rows<'a, P> {
     direct: Solids,
     floor: Option<Floor>,
     background: [f32; 3],
+    stage: Stage,
+    precision: Precision,
+}
+
+/// The arithmetic that spheres are shaded with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    /// f32.
+    Single,
+    /// f64.
+    Double,
+    /// f64, and pixels that its errors may make wrong are asked for by themselves.
+    Bounded,
 }
 
 /// The surface.
@@ -132,9 +147,10 @@ enum Front {
     Unknown,
 }
 
-impl<'a, P: Colors> Rows<'a, P> {
-    /// The frame of `picture`, in a stage that shows solids.
-    pub(super) fn new(picture: &Picture<'_, Bounded>, pixels: &'a P, level: Level) -> Self {
+impl<'a, P: Lines> Rows<'a, P> {
+    /// The frame that `pixels` are of.
+    pub(super) fn new(pixels: &'a P, precision: Precision, level: Level) -> Self {
+        let picture = pixels.bounded();
         let screen = Screen::new(picture.size);
         let color = |decision| pixels.color(decision);
         let floor = picture
@@ -148,6 +164,8 @@ impl<'a, P: Colors> Rows<'a, P> {
             direct: Solids::new(picture, &picture.view, false, &color, screen),
             floor,
             background: color(Decision::Background),
+            stage: picture.stage,
+            precision,
         }
     }
 
@@ -169,6 +187,17 @@ impl<'a, P: Colors> Rows<'a, P> {
             decisions,
             in_doubt: InDoubt::default(),
         };
+        if self.stage == Stage::Image {
+            // Code 2-1 knows two kinds of column.
+            let middle = (screen.size / 2 + 1).min(screen.size);
+            for columns in [(0, middle), (middle, screen.size)] {
+                if columns.0 < columns.1 {
+                    let decision = Decision::Quadrant(quadrant(columns.0, number, screen.size));
+                    row.fill(columns, decision, self.pixels.color(decision));
+                }
+            }
+            return row.in_doubt;
+        }
         let mut crossed = std::mem::take(&mut scratch.direct);
         self.direct.cross(number, screen, &mut crossed.spans);
         let on_floor = match &self.floor {
@@ -310,8 +339,18 @@ impl<'a, P: Colors> Rows<'a, P> {
                     decisions: row.decisions.as_mut().map(|all| (&mut all[range], both)),
                     doubts: &mut scratch.doubts,
                 };
-                dispatch!(self.level, simd => lanes::shade(simd, &shade, &mut run));
-                row.ask(scratch.doubts.drain(..), self.pixels);
+                match self.precision {
+                    Precision::Bounded => {
+                        dispatch!(self.level, simd => lanes::shade(simd, &shade, &mut run));
+                        row.ask(scratch.doubts.drain(..), self.pixels);
+                    }
+                    Precision::Double => {
+                        dispatch!(self.level, simd => plain::shade_in_double(simd, &shade, &mut run));
+                    }
+                    Precision::Single => {
+                        dispatch!(self.level, simd => plain::shade_in_single(simd, &shade, &mut run));
+                    }
+                }
             }
             Body::Facets(facets, pairs) => {
                 let mut cuts = std::mem::take(&mut scratch.cuts);

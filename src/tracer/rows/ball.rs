@@ -35,6 +35,11 @@ pub(super) struct Form {
 }
 
 impl Form {
+    /// The vector that n is multiplied with, in the axes of q, m and s.
+    pub(super) fn vector(&self) -> [f64; 3] {
+        [self.across, self.off, self.out]
+    }
+
     /// The part that does not change along a row.
     pub(super) fn of_row(&self, m: f64) -> f64 {
         self.constant + self.off * m
@@ -93,6 +98,8 @@ pub(super) struct Ball {
     at: Vector<Bounded>,
     /// n·l, with n and l of length 1.
     pub(super) light: Form,
+    /// 1/R.
+    pub(super) inverse_radius: f64,
     /// n·h; `None` where there is no highlight.
     pub(super) halfway: Option<Form>,
     pub(super) exponent: u32,
@@ -184,6 +191,7 @@ impl Ball {
             known,
             at: sphere.center,
             light,
+            inverse_radius: 1.0 / sphere.radius.value(),
             halfway,
             exponent,
             // (1 − x)ⁿ ≤ e^−nx, and e^−41 < 2⁻⁵⁹.

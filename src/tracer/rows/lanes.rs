@@ -1,5 +1,7 @@
 //! Many pixels of a row at a time.
 
+use std::ops::Range;
+
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -18,10 +20,10 @@ pub(super) enum Caster {
 
 /// Points in the shadow of a ball.
 pub(super) struct Passing {
-    before: Form,
+    pub(super) before: Form,
     /// The components of a vector, of which the squared length is at most `reach`; in each zone a bound on the error of the difference.
-    moment: [Form; 3],
-    reach: f64,
+    pub(super) moment: [Form; 3],
+    pub(super) reach: f64,
     errors: [f64; ZONES],
 }
 
@@ -53,6 +55,22 @@ const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
 
 // No closures below: the instructions of a level are only there for what is inlined into its dispatch, which closures
 // given to other functions are not.
+
+impl Run<'_> {
+    /// Writes the decisions of some pixels, bit by bit in shadow or not.
+    #[inline(always)]
+    pub(super) fn decide(&mut self, pixels: Range<usize>, in_shadow: u64) {
+        if let Some((decisions, [light, shadow])) = &mut self.decisions {
+            for (i, decision) in decisions[pixels].iter_mut().enumerate() {
+                *decision = if in_shadow >> i & 1 == 1 {
+                    *shadow
+                } else {
+                    *light
+                };
+            }
+        }
+    }
+}
 
 /// As many pixels as f64 lanes: bounds on their samples, and bit by bit who is in shadow and who is known.
 struct Lit<V> {
@@ -96,15 +114,7 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
             channels[1].as_slice(),
             channels[2].as_slice(),
         );
-        if let Some((decisions, [light, shadow])) = &mut run.decisions {
-            for (i, decision) in decisions[first..first + here].iter_mut().enumerate() {
-                *decision = if in_shadow >> i & 1 == 1 {
-                    *shadow
-                } else {
-                    *light
-                };
-            }
-        }
+        run.decide(first..first + here, in_shadow);
         let mut doubts = !known & (u64::MAX >> (64 - here));
         while doubts != 0 {
             run.doubts
@@ -117,7 +127,7 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
 
 /// Red, green and blue, pixel by pixel.
 #[inline(always)]
-fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: &[f32]) {
+pub(super) fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: &[f32]) {
     let channels = red.iter().zip(green).zip(blue);
     for (pixel, ((&red, &green), &blue)) in samples.chunks_exact_mut(3).zip(channels) {
         pixel[0] = red;
