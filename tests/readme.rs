@@ -10,15 +10,55 @@ use firsthit::image::display_byte;
 use firsthit::report::HARD_SCENES;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer, viewer};
 
-/// The pictures under tests/images, each a stage at a frame of the animation.
-const PICTURES: [(&str, Stage, u64); 7] = [
-    ("figure-2-1", Stage::Image, 0),
-    ("figure-3-1-spheres", Stage::Spheres, 0),
-    ("figure-3-1-tetrahedron", Stage::Tetrahedron, 0),
-    ("figure-4-3", Stage::Shading, 0),
-    ("section-5-1", Stage::Shadow, 0),
-    ("figure-6-1", Stage::Reflection, 0),
-    ("figure-6-2", Stage::Reflection, 7),
+/// A picture under tests/images: its name, the scene's name in tests/scenes or none for the built-in scene, N, stage, frame and kernel.
+type Picture = (&'static str, Option<&'static str>, u32, Stage, u64, Kernel);
+
+const PICTURES: [Picture; 10] = [
+    ("figure-2-1", None, 500, Stage::Image, 0, Kernel::Exact),
+    (
+        "figure-3-1-spheres",
+        None,
+        500,
+        Stage::Spheres,
+        0,
+        Kernel::Exact,
+    ),
+    (
+        "figure-3-1-tetrahedron",
+        None,
+        500,
+        Stage::Tetrahedron,
+        0,
+        Kernel::Exact,
+    ),
+    ("figure-4-3", None, 500, Stage::Shading, 0, Kernel::Exact),
+    ("section-5-1", None, 500, Stage::Shadow, 0, Kernel::Exact),
+    ("figure-6-1", None, 500, Stage::Reflection, 0, Kernel::Exact),
+    ("figure-6-2", None, 500, Stage::Reflection, 7, Kernel::Exact),
+    (
+        "figure-6-2-listing",
+        None,
+        500,
+        Stage::Reflection,
+        7,
+        Kernel::Listing,
+    ),
+    (
+        "nested-spheres",
+        Some("nested_spheres"),
+        250,
+        Stage::Reflection,
+        1,
+        Kernel::Exact,
+    ),
+    (
+        "nested-spheres-fast",
+        Some("nested_spheres"),
+        250,
+        Stage::Reflection,
+        1,
+        Kernel::Fast,
+    ),
 ];
 
 fn file(name: &str) -> std::path::PathBuf {
@@ -27,18 +67,25 @@ fn file(name: &str) -> std::path::PathBuf {
 
 #[test]
 fn its_pictures_are_traced_pictures() {
-    let mut tracer = Tracer::new(Kernel::Exact, 0).unwrap();
-    let mut image = Image::new(500).unwrap();
-    for (name, stage, frame) in PICTURES {
+    for (name, scene, size, stage, frame, kernel) in PICTURES {
+        let scene = match scene {
+            Some(scene) => {
+                let path = file(&format!("tests/scenes/{scene}.toml"));
+                Scene::from_toml(&fs::read_to_string(path).unwrap()).unwrap()
+            }
+            None => Scene::builtin(),
+        };
         let png = BufReader::new(File::open(file(&format!("tests/images/{name}.png"))).unwrap());
         let mut reader = png::Decoder::new(png).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut bytes).unwrap();
 
-        tracer
-            .trace(&Scene::builtin(), stage, frame_angle(frame), &mut image)
+        let mut image = Image::new(size).unwrap();
+        Tracer::new(kernel, 0)
+            .unwrap()
+            .trace(&scene, stage, frame_angle(frame), &mut image)
             .unwrap();
-        let rows = image.samples().chunks(3 * 500).rev();
+        let rows = image.samples().chunks(3 * size as usize).rev();
         let expected: Vec<u8> = rows.flatten().copied().map(display_byte).collect();
         assert!(bytes == expected, "{name}");
     }
