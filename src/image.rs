@@ -19,10 +19,18 @@ pub const MAX_SIZE: u32 = 16384;
 /// A square picture of N × N pixels, each red, green and blue as linear floats: not clamped, not gamma-encoded.
 ///
 /// Rows go from the **bottom** to the top, as `glDrawPixels` and `glTexSubImage2D` lay them out; a row goes from left to right.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub struct Image {
     size: u32,
     samples: Vec<f32>,
+    /// The number of the frame that a tracer has left here, to trace the next one over it; 0 after anyone else could write.
+    frame: u64,
+}
+
+impl PartialEq for Image {
+    fn eq(&self, other: &Image) -> bool {
+        self.size == other.size && self.samples == other.samples
+    }
 }
 
 /// An image that cannot be made.
@@ -51,7 +59,11 @@ impl Image {
             .try_reserve_exact(length)
             .map_err(|_| ImageError::Memory(size))?;
         samples.resize(length, 0.0);
-        Ok(Image { size, samples })
+        Ok(Image {
+            size,
+            samples,
+            frame: 0,
+        })
     }
 
     /// N, the number of pixels along a side.
@@ -66,6 +78,18 @@ impl Image {
 
     /// The same floats, to be written.
     pub fn samples_mut(&mut self) -> &mut [f32] {
+        self.frame = 0;
+        &mut self.samples
+    }
+
+    /// The number of the frame that a tracer left here.
+    pub(crate) fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// The samples, for a tracer that is to leave the frame of this number, and no other.
+    pub(crate) fn samples_of_frame(&mut self, frame: u64) -> &mut [f32] {
+        self.frame = frame;
         &mut self.samples
     }
 

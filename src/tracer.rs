@@ -23,6 +23,9 @@ mod tetrahedron;
 mod vector;
 mod view;
 
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -30,7 +33,7 @@ use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
-use rows::{Precision, Rows, Scratch};
+use rows::{Memory, Precision, Rows, Scratch};
 pub use simd::Simd;
 
 /// How numbers are computed.
@@ -152,6 +155,10 @@ pub struct Tracer {
     pool: Option<ThreadPool>,
     simd: Simd,
     in_doubt: InDoubt,
+    /// What is known of the rows of the frame that was traced last to be traced over.
+    memory: Vec<Memory>,
+    /// The number of that frame; 0 before there is one.
+    frame: u64,
 }
 
 impl Tracer {
@@ -170,6 +177,8 @@ impl Tracer {
             kernel,
             pool,
             simd: Simd::best(),
+            memory: Vec::new(),
+            frame: 0,
             in_doubt: InDoubt::default(),
         })
     }
@@ -206,7 +215,35 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
     ) -> Result<(), TraceError> {
-        self.trace_frame(scene, stage, alpha, image, None)
+        self.trace_frame(scene, stage, alpha, image, None, Extent::Whole)
+    }
+
+    /// The same picture, into an image that may hold the frame that this tracer left there before: what has not changed is not
+    /// written again. An image that holds anything else is written whole.
+    ///
+    /// ```
+    /// use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+    ///
+    /// let (scene, mut tracer) = (Scene::builtin(), Tracer::new(Kernel::Exact, 1)?);
+    /// let (mut image, mut whole) = (Image::new(64)?, Image::new(64)?);
+    /// for alpha in [0.0, 0.3, 0.6] {
+    ///     tracer.retrace(&scene, Stage::Animation, alpha, &mut image)?;
+    ///     tracer.trace(&scene, Stage::Animation, alpha, &mut whole)?;
+    ///     assert!(image == whole);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Tracer::trace`].
+    pub fn retrace(
+        &mut self,
+        scene: &Scene,
+        stage: Stage,
+        alpha: f64,
+        image: &mut Image,
+    ) -> Result<(), TraceError> {
+        self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)
     }
 
     /// The same, and what was decided for each pixel: N² decisions, rows from the bottom.
@@ -221,7 +258,14 @@ impl Tracer {
         image: &mut Image,
     ) -> Result<Vec<Decision>, TraceError> {
         let mut decisions = vec![Decision::Background; image.samples().len() / 3];
-        self.trace_frame(scene, stage, alpha, image, Some(&mut decisions))?;
+        self.trace_frame(
+            scene,
+            stage,
+            alpha,
+            image,
+            Some(&mut decisions),
+            Extent::Whole,
+        )?;
         Ok(decisions)
     }
 
@@ -291,6 +335,7 @@ impl Tracer {
             row,
             &mut samples,
             Some(&mut decisions),
+            None,
             &mut Scratch::default(),
         );
         let place = column as usize;
@@ -306,68 +351,77 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
+        extent: Extent,
     ) -> Result<(), TraceError> {
         if !alpha.is_finite() {
             return Err(TraceError::Angle(alpha));
         }
         let n = image.size();
-        self.in_doubt = match self.kernel {
-            Kernel::Exact => {
-                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
-                self.trace_rows(&ladder, Precision::Bounded, image, decisions)
-            }
-            Kernel::Fast => {
-                let plain = Plain::<f32>::new(scene, stage, alpha, n);
-                self.trace_rows(&plain, Precision::Single, image, decisions)
-            }
-            Kernel::Double => {
-                let plain = Plain::<f64>::new(scene, stage, alpha, n);
-                self.trace_rows(&plain, Precision::Double, image, decisions)
-            }
-            Kernel::Listing => {
-                self.trace_pixels(&Listing::new(scene, stage, alpha, n)?, image, decisions)
-            }
-            Kernel::Reference => self.trace_pixels(
-                &Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble),
-                image,
-                decisions,
-            ),
+        // Refused before anything is written or forgotten.
+        let listing = match self.kernel {
+            Kernel::Listing => Some(Listing::new(scene, stage, alpha, n)?),
+            _ => None,
         };
+        let mut memory = std::mem::take(&mut self.memory);
+        let (remembered, samples) = match extent {
+            Extent::Whole => (None, image.samples_mut()),
+            Extent::Changes => {
+                let known = self.frame != 0 && image.frame() == self.frame;
+                if !known {
+                    memory.iter_mut().for_each(Memory::clear);
+                }
+                memory.resize_with(n as usize, Memory::default);
+                self.frame = next_frame();
+                let samples = image.samples_of_frame(self.frame);
+                (Some(memory.as_mut_slice()), samples)
+            }
+        };
+        let target = Target {
+            size: n,
+            samples,
+            decisions,
+            memory: remembered,
+        };
+        self.in_doubt = match (self.kernel, &listing) {
+            (_, Some(listing)) => self.trace_pixels(listing, target),
+            (Kernel::Fast, _) => {
+                let plain = Plain::<f32>::new(scene, stage, alpha, n);
+                self.trace_rows(&plain, Precision::Single, target)
+            }
+            (Kernel::Double, _) => {
+                let plain = Plain::<f64>::new(scene, stage, alpha, n);
+                self.trace_rows(&plain, Precision::Double, target)
+            }
+            (Kernel::Reference, _) => {
+                let ladder = Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble);
+                self.trace_pixels(&ladder, target)
+            }
+            _ => {
+                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
+                self.trace_rows(&ladder, Precision::Bounded, target)
+            }
+        };
+        self.memory = memory;
         Ok(())
     }
 
-    fn trace_rows(
-        &self,
-        pixels: &impl Lines,
-        precision: Precision,
-        image: &mut Image,
-        decisions: Option<&mut [Decision]>,
-    ) -> InDoubt {
+    fn trace_rows(&self, pixels: &impl Lines, precision: Precision, target: Target<'_>) -> InDoubt {
         let rows = Rows::new(pixels, precision, self.simd.0);
-        let scratch = Scratch::default;
-        self.each_row(
-            image,
-            decisions,
-            scratch,
-            |row, samples, decisions, scratch| rows.trace(row, samples, decisions, scratch),
-        )
+        self.each_row(target, Scratch::default, |number, row, scratch| {
+            let memory = row.memory.and_then(<[Memory]>::first_mut);
+            rows.trace(number, row.samples, row.decisions, memory, scratch)
+        })
     }
 
-    fn trace_pixels(
-        &self,
-        pixels: &impl Pixels,
-        image: &mut Image,
-        decisions: Option<&mut [Decision]>,
-    ) -> InDoubt {
+    fn trace_pixels(&self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
         self.each_row(
-            image,
-            decisions,
+            target,
             || (),
-            |row, samples, decisions, ()| {
+            |number, row, ()| {
                 let mut in_doubt = InDoubt::default();
-                let mut decisions = decisions.into_iter().flatten();
-                for (column, sample) in samples.chunks_exact_mut(3).enumerate() {
-                    let ((decision, color), rung) = pixels.pixel(column as u32, row);
+                let mut decisions = row.decisions.into_iter().flatten();
+                for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
+                    let ((decision, color), rung) = pixels.pixel(column as u32, number);
                     in_doubt.count(rung);
                     sample.copy_from_slice(&color);
                     if let Some(place) = decisions.next() {
@@ -379,38 +433,69 @@ impl Tracer {
         )
     }
 
-    /// Traces every row, on all threads: `trace` gets its number, its samples, and the place for its decisions if they are asked for.
+    /// Traces every row, on all threads: `trace` gets its number and where it goes.
     fn each_row<Scratch>(
         &self,
-        image: &mut Image,
-        decisions: Option<&mut [Decision]>,
+        target: Target<'_>,
         scratch: impl Fn() -> Scratch + Sync,
-        trace: impl Fn(u32, &mut [f32], Option<&mut [Decision]>, &mut Scratch) -> InDoubt + Sync,
+        trace: impl Fn(u32, Target<'_>, &mut Scratch) -> InDoubt + Sync,
     ) -> InDoubt {
-        let width = image.size() as usize;
-        let band = |first: usize, samples: &mut [f32], decisions: Option<&mut [Decision]>| {
+        let band = |first: usize, band: Target<'_>| {
             let mut scratch = scratch();
-            let mut decisions = decisions.map(|decisions| decisions.chunks_exact_mut(width));
-            let rows = samples.chunks_exact_mut(3 * width).enumerate();
-            rows.map(|(row, samples)| {
-                let decisions = decisions.as_mut().and_then(Iterator::next);
-                trace((first + row) as u32, samples, decisions, &mut scratch)
-            })
-            .fold(InDoubt::default(), InDoubt::and)
+            band.split(1)
+                .enumerate()
+                .map(|(row, target)| trace((first + row) as u32, target, &mut scratch))
+                .fold(InDoubt::default(), InDoubt::and)
         };
-        let samples = image.samples_mut();
         let Some(pool) = &self.pool else {
-            return band(0, samples, decisions);
+            return band(0, target);
         };
-        let bands = samples.par_chunks_mut(3 * width * BAND).enumerate();
-        pool.install(|| match decisions {
-            Some(decisions) => bands
-                .zip(decisions.par_chunks_mut(width * BAND))
-                .map(|((number, samples), decisions)| band(number * BAND, samples, Some(decisions)))
-                .reduce(InDoubt::default, InDoubt::and),
-            None => bands
-                .map(|(number, samples)| band(number * BAND, samples, None))
-                .reduce(InDoubt::default, InDoubt::and),
+        let bands: Vec<_> = target.split(BAND).enumerate().collect();
+        pool.install(|| {
+            bands
+                .into_par_iter()
+                .map(|(number, target)| band(number * BAND, target))
+                .reduce(InDoubt::default, InDoubt::and)
+        })
+    }
+}
+
+/// How much of an image is written.
+#[derive(Clone, Copy)]
+enum Extent {
+    Whole,
+    /// What differs from the frame before.
+    Changes,
+}
+
+/// The number of a new frame, unlike that of any other tracer.
+fn next_frame() -> u64 {
+    static COUNT: AtomicU64 = AtomicU64::new(1);
+    COUNT.fetch_add(1, Relaxed)
+}
+
+/// Some rows, and where they go.
+struct Target<'t> {
+    /// N.
+    size: u32,
+    samples: &'t mut [f32],
+    decisions: Option<&'t mut [Decision]>,
+    memory: Option<&'t mut [Memory]>,
+}
+
+impl<'t> Target<'t> {
+    /// Bands of so many rows.
+    fn split(self, rows: usize) -> impl Iterator<Item = Target<'t>> {
+        let size = self.size;
+        let width = size as usize;
+        let mut decisions = self.decisions.map(|all| all.chunks_mut(width * rows));
+        let mut memory = self.memory.map(|all| all.chunks_mut(rows));
+        let samples = self.samples.chunks_mut(3 * width * rows);
+        samples.map(move |samples| Target {
+            size,
+            samples,
+            decisions: decisions.as_mut().and_then(Iterator::next),
+            memory: memory.as_mut().and_then(Iterator::next),
         })
     }
 }

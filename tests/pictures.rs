@@ -147,3 +147,56 @@ fn few_pixels_of_a_round_are_in_doubt() {
     eprintln!("{double_double} pixels by double-doubles, {arbitrary} by arbitrary precision");
     assert!(double_double + arbitrary <= 20 && arbitrary <= 2);
 }
+
+#[test]
+fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
+    let scenes = [
+        "resting_spheres",
+        "crowd",
+        "light_from_below",
+        "shared_faces",
+    ]
+    .map(|name| {
+        let path = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
+    });
+    let kernels = [
+        (Kernel::Exact, 1),
+        (Kernel::Exact, 3),
+        (Kernel::Fast, 1),
+        (Kernel::Double, 2),
+    ];
+    let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
+    // Two pictures of two sizes, which the tracers take turns with; now and then somebody else writes into one.
+    let mut retained = [61, 96].map(|size| Image::new(size).unwrap());
+    let mut whole = retained.clone();
+    let mut random = 1u64;
+    let mut choose = |count: usize| {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (random >> 33) as usize % count
+    };
+    for step in 0..3000 {
+        let tracer = &mut tracers[if step % 3 == 0 { choose(4) } else { 0 }];
+        let scene = &scenes[if step % 5 == 0 { choose(4) } else { 0 }];
+        let stage = Stage::from_number([6, 6, 6, choose(7) as u8 + 1][choose(4)]).unwrap();
+        let alpha = frame_angle(step) + [0.0, 0.01][choose(2)];
+        let size = choose(2);
+        if choose(20) == 0 {
+            retained[size].samples_mut()[choose(3 * 61 * 61)] = 7.0;
+        }
+        tracer
+            .retrace(scene, stage, alpha, &mut retained[size])
+            .unwrap();
+        tracer.trace(scene, stage, alpha, &mut whole[size]).unwrap();
+        let bits = |image: &Image| {
+            image
+                .samples()
+                .iter()
+                .map(|s| s.to_bits())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(bits(&retained[size]), bits(&whole[size]), "step {step}");
+    }
+}

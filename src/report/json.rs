@@ -135,7 +135,7 @@ impl Report {
             fill_ms: timing.map(|timing| timing.fill_ms),
             fill_gb_per_s: timing.map(|timing| self.gb_per_s(timing.fill_ms)),
             fill_ratio: timing.map(|timing| timing.fill_ratio),
-            retained_fill_ratio: timing.and_then(|timing| timing.retained_fill_ratio),
+            retained_fill_ratio: timing.map(|timing| timing.retained_fill_ratio),
             wrong_pixels: wrong.map(|wrong| wrong.total()),
             wrong_by_kind: wrong.map(|wrong| Wrong {
                 solid: wrong.solid,

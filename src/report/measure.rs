@@ -59,8 +59,8 @@ pub struct Timing {
     pub fill_ms: Spread,
     /// The time of a round by the time of filling as often.
     pub fill_ratio: Spread,
-    /// The same with each frame traced over its predecessor; `None` as long as the tracer cannot.
-    pub retained_fill_ratio: Option<Spread>,
+    /// The same with each frame traced over its predecessor, by [`Tracer::retrace`].
+    pub retained_fill_ratio: Spread,
 }
 
 /// The fastest fill for one size and at most some threads.
@@ -145,7 +145,10 @@ pub(super) fn time(
     if let Some(&alpha) = angles.first() {
         tracer.trace(scene, stage, alpha, image)?;
     }
-    let (mut ms, mut fill_ms, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    // A picture of its own, so that each frame finds its predecessor.
+    let mut kept = image.clone();
+    let (mut ms, mut fill_ms) = (Vec::new(), Vec::new());
+    let (mut ratios, mut retained) = (Vec::new(), Vec::new());
     let count = angles.len() as f64;
     let begin = Instant::now();
     while ms.len() < MIN_SAMPLES || (begin.elapsed() < TIME && ms.len() < MAX_SAMPLES) {
@@ -163,6 +166,13 @@ pub(super) fn time(
         // A clock that stood still must not make a ratio infinite.
         let fills = start.elapsed().as_secs_f64().max(1e-9);
 
+        let start = Instant::now();
+        for &alpha in angles {
+            tracer.retrace(scene, stage, alpha, &mut kept)?;
+        }
+        retained.push(start.elapsed().as_secs_f64() / fills);
+        std::hint::black_box(kept.samples());
+
         ms.push(1e3 * round / count);
         fill_ms.push(1e3 * fills / count);
         ratios.push(round / fills);
@@ -173,8 +183,14 @@ pub(super) fn time(
         // These go pixel by pixel.
         Kernel::Listing | Kernel::Reference => "none",
     };
-    let spreads = (Spread::of(ms), Spread::of(fill_ms), Spread::of(ratios));
-    let (Some(ms), Some(fill_ms), Some(fill_ratio)) = spreads else {
+    let spreads = [ms, fill_ms, ratios, retained].map(Spread::of);
+    let [
+        Some(ms),
+        Some(fill_ms),
+        Some(fill_ratio),
+        Some(retained_fill_ratio),
+    ] = spreads
+    else {
         return Ok(None);
     };
     Ok(Some(Timing {
@@ -184,7 +200,7 @@ pub(super) fn time(
         ms,
         fill_ms,
         fill_ratio,
-        retained_fill_ratio: None,
+        retained_fill_ratio,
     }))
 }
 

@@ -117,10 +117,7 @@ impl Report {
                 format!("{} … {}", digits(min), digits(max)),
                 digits(self.mpixel_per_s(timing.ms)),
                 digits(timing.fill_ratio.median),
-                match timing.retained_fill_ratio {
-                    Some(ratio) => digits(ratio.median),
-                    None => "not yet".to_owned(),
-                },
+                digits(timing.retained_fill_ratio.median),
             ]);
         }
         cells

@@ -100,6 +100,21 @@ impl Crossed {
     }
 }
 
+/// The columns of a row that were last given one colour.
+#[derive(Default)]
+pub(super) struct Memory {
+    filled: Vec<(Columns, [u32; 3])>,
+    /// The same of the frame that is being traced.
+    next: Vec<(Columns, [u32; 3])>,
+}
+
+impl Memory {
+    /// Forgets the row, which others may have written.
+    pub(super) fn clear(&mut self) {
+        self.filled.clear();
+    }
+}
+
 /// A row that is being written.
 struct Row<'r> {
     level: Level,
@@ -108,6 +123,8 @@ struct Row<'r> {
     y: f64,
     samples: &'r mut [f32],
     decisions: Option<&'r mut [Decision]>,
+    /// What the samples are from the frame before, where only what differs is to be written.
+    memory: Option<&'r mut Memory>,
     in_doubt: InDoubt,
 }
 
@@ -117,12 +134,45 @@ type Columns = (u32, u32);
 impl Row<'_> {
     /// The same samples in all columns.
     fn fill(&mut self, (from, to): Columns, decision: Decision, color: [f32; 3]) {
-        let columns = from as usize..to as usize;
-        let samples = &mut self.samples[3 * columns.start..3 * columns.end];
-        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
         if let Some(decisions) = &mut self.decisions {
-            decisions[columns].fill(decision);
+            decisions[from as usize..to as usize].fill(decision);
         }
+        let Some(memory) = self.memory.take() else {
+            return self.write((from, to), color);
+        };
+        let bits = color.map(f32::to_bits);
+        match memory.next.last_mut() {
+            Some((columns, same)) if columns.1 == from && *same == bits => columns.1 = to,
+            _ => memory.next.push(((from, to), bits)),
+        }
+        // What lies between runs that had this colour already.
+        let mut begin = from;
+        for &((first, end), before) in &memory.filled {
+            if before == bits && first < to && end > begin {
+                if first > begin {
+                    self.write((begin, first), color);
+                }
+                begin = end;
+            }
+        }
+        if begin < to {
+            self.write((begin, to), color);
+        }
+        self.memory = Some(memory);
+    }
+
+    fn write(&mut self, (from, to): Columns, color: [f32; 3]) {
+        let samples = &mut self.samples[3 * from as usize..3 * to as usize];
+        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
+    }
+
+    /// The row is written.
+    fn finish(self) -> InDoubt {
+        if let Some(memory) = self.memory {
+            std::mem::swap(&mut memory.filled, &mut memory.next);
+            memory.next.clear();
+        }
+        self.in_doubt
     }
 
     /// Asks for each pixel by itself.
@@ -170,12 +220,13 @@ impl<'a, P: Lines> Rows<'a, P> {
     }
 
     /// Traces a row into its samples, and its decisions where they are asked for. How many pixels double-doubles and arbitrary
-    /// precision had to settle.
+    /// precision had to settle. With a `memory` of the row, which holds for `samples`, only what differs is written.
     pub(super) fn trace(
         &self,
         number: u32,
         samples: &mut [f32],
         decisions: Option<&mut [Decision]>,
+        memory: Option<&mut Memory>,
         scratch: &mut Scratch,
     ) -> InDoubt {
         let screen = self.screen;
@@ -185,6 +236,7 @@ impl<'a, P: Lines> Rows<'a, P> {
             y: screen.place(number),
             samples,
             decisions,
+            memory,
             in_doubt: InDoubt::default(),
         };
         if self.stage == Stage::Image {
@@ -196,7 +248,7 @@ impl<'a, P: Lines> Rows<'a, P> {
                     row.fill(columns, decision, self.pixels.color(decision));
                 }
             }
-            return row.in_doubt;
+            return row.finish();
         }
         let mut crossed = std::mem::take(&mut scratch.direct);
         self.direct.cross(number, screen, &mut crossed.spans);
@@ -231,7 +283,7 @@ impl<'a, P: Lines> Rows<'a, P> {
         }
         crossed.cuts = cuts;
         scratch.direct = crossed;
-        row.in_doubt
+        row.finish()
     }
 
     /// Columns that all meet the same solids, and the surface where it is given.

@@ -72,10 +72,13 @@ impl Run<'_> {
     }
 }
 
-/// As many pixels as f64 lanes: bounds on their samples, and bit by bit who is in shadow and who is known.
-struct Lit<V> {
-    lower: [V; 3],
-    upper: [V; 3],
+/// As many pixels as f64 lanes: where they are hit, and bit by bit who is in shadow and who is known.
+struct Hits<V> {
+    q: V,
+    s: V,
+    /// n·l.
+    light: V,
+    zone: usize,
     in_shadow: u64,
     known: u64,
 }
@@ -91,31 +94,36 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let low = lit(simd, shade, m, x);
-        let high = lit(simd, shade, m, x + 3.0 * half as f64);
+        let low = hits(simd, shade, m, x);
+        let high = hits(simd, shade, m, x + 3.0 * half as f64);
         let in_shadow = low.in_shadow | high.in_shadow << half;
         let mut known = low.known | high.known << half;
-        let dark = S::mask32s::from_bitmask(simd, in_shadow);
-        let mut channels = [zero; 3];
-        #[expect(clippy::needless_range_loop, reason = "five arrays go together")]
-        for i in 0..3 {
-            let lower = low.lower[i].narrow(high.lower[i]);
-            let upper = low.upper[i].narrow(high.upper[i]);
-            known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
-            // + 0 turns −0 into +0.
-            let shadow = S::f32s::splat(simd, shade.color_in_shadow[i]);
-            channels[i] = dark.select(shadow, upper + zero);
-        }
         let here = width.min(count - first);
+        let all = u64::MAX >> (64 - here);
         let samples = &mut run.samples[3 * first..3 * (first + here)];
-        interleave(
-            samples,
-            channels[0].as_slice(),
-            channels[1].as_slice(),
-            channels[2].as_slice(),
-        );
+        if in_shadow & all == all {
+            for pixel in samples.chunks_exact_mut(3) {
+                pixel.copy_from_slice(&shade.color_in_shadow);
+            }
+        } else {
+            let (low_lower, low_upper) = lit(simd, shade, m, &low);
+            let (high_lower, high_upper) = lit(simd, shade, m, &high);
+            let dark = S::mask32s::from_bitmask(simd, in_shadow);
+            let mut channels = [zero; 3];
+            #[expect(clippy::needless_range_loop, reason = "five arrays go together")]
+            for i in 0..3 {
+                let lower = low_lower[i].narrow(high_lower[i]);
+                let upper = low_upper[i].narrow(high_upper[i]);
+                known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
+                // + 0 turns −0 into +0.
+                let shadow = S::f32s::splat(simd, shade.color_in_shadow[i]);
+                channels[i] = dark.select(shadow, upper + zero);
+            }
+            let [red, green, blue] = &channels;
+            interleave(samples, red.as_slice(), green.as_slice(), blue.as_slice());
+        }
         run.decide(first..first + here, in_shadow);
-        let mut doubts = !known & (u64::MAX >> (64 - here));
+        let mut doubts = !known & all;
         while doubts != 0 {
             run.doubts
                 .push(run.from + first as u32 + doubts.trailing_zeros());
@@ -143,16 +151,15 @@ fn value<S: Simd>(simd: S, form: &Form, m: f64, q: S::f64s, s: S::f64s) -> S::f6
 }
 
 #[inline(always)]
-fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
+fn hits<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Hits<S::f64s> {
     let ball: &Ball = shade.ball;
-    let zero = S::f64s::splat(simd, 0.0);
     let places = S::f64s::from_slice(simd, &PLACES[..S::f64s::LEN]);
-    let q = places + (x) - ball.center;
+    let q = places + x - ball.center;
     let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
     let zone = usize::from(squared.simd_lt(ball.least[0]).any_true());
     let mut known = squared.simd_ge(ball.least[1]);
     let s = squared.sqrt();
-    let mut light = value(simd, &ball.light, m, q, s);
+    let light = value(simd, &ball.light, m, q, s);
     let mut in_shadow = S::mask64s::splat(simd, false);
     if shade.shadows {
         let error = ball.light.errors[zone];
@@ -165,14 +172,34 @@ fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
         }
         known &= in_shadow | settled;
     }
-    light = light.max(zero);
+    Hits {
+        q,
+        s,
+        light,
+        zone,
+        in_shadow: in_shadow.to_bitmask(),
+        known: known.to_bitmask(),
+    }
+}
+
+/// Bounds on the samples of pixels in the light.
+#[inline(always)]
+fn lit<S: Simd>(
+    simd: S,
+    shade: &Shade<'_>,
+    m: f64,
+    hits: &Hits<S::f64s>,
+) -> ([S::f64s; 3], [S::f64s; 3]) {
+    let ball: &Ball = shade.ball;
+    let zero = S::f64s::splat(simd, 0.0);
+    let light = hits.light.max(zero);
     let mut samples = [zero; 3];
     for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
         *sample = light * channel.diffuse + channel.ambient;
     }
     let mut highlight = 0;
     if let Some(form) = &ball.halfway {
-        let x = value(simd, form, m, q, s);
+        let x = value(simd, form, m, hits.q, hits.s);
         if x.simd_gt(ball.highlight).any_true() {
             highlight = 1;
             let power = power(simd, x.max(ball.highlight), ball.exponent);
@@ -183,16 +210,11 @@ fn lit<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Lit<S::f64s> {
     }
     let (mut lower, mut upper) = (samples, samples);
     for i in 0..3 {
-        let error = ball.channels[i].errors[zone][highlight];
+        let error = ball.channels[i].errors[hits.zone][highlight];
         lower[i] -= error;
         upper[i] += error;
     }
-    Lit {
-        lower,
-        upper,
-        in_shadow: in_shadow.to_bitmask(),
-        known: known.to_bitmask(),
-    }
+    (lower, upper)
 }
 
 /// xⁿ, by squaring.
