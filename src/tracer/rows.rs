@@ -556,11 +556,16 @@ impl Floor {
             .sides([sheet.origin, sheet.per_column, sheet.per_row]);
         let sides = sides
             .map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, screen));
-        let solids = picture.scene.spheres().len() + picture.scene.tetrahedra().len();
+        let scene = picture.scene;
+        let solids = scene.spheres().len() + scene.tetrahedra().len();
         let magnitude = height.value().abs() + screen.reach;
+        // Rays that rise from the surface meet what is above it ahead. They may touch it at their very beginning, but there the solid is
+        // seen, and not the surface.
+        let rises = scene.light().direction.y < 0.0;
+        let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         Floor {
             outline: Shape::new(sides.into(), None, screen).within(floor.extent.rows(screen.size)),
-            shadows: solids::shadows_on(&sheet, &picture.view, 0..solids as u16, screen),
+            shadows: solids::shadows_on(&sheet, &picture.view, 0..solids as u16, is_ahead, screen),
             mirrored: floor
                 .mirror
                 .as_ref()
@@ -586,11 +591,11 @@ impl Floor {
 /// Cuts columns where any of the spans begins or ends, certainly or possibly.
 fn cut<'s>(columns: Columns, spans: impl Iterator<Item = &'s Span>, cuts: &mut Vec<u32>) {
     cuts.clear();
+    cuts.push(columns.0);
     for span in spans {
-        span.cut(cuts);
+        span.cut(columns, cuts);
     }
-    cuts.retain(|&cut| cut > columns.0 && cut < columns.1);
-    cuts.extend([columns.0, columns.1]);
+    cuts.push(columns.1);
     cuts.sort_unstable();
     cuts.dedup();
 }

@@ -150,7 +150,13 @@ impl Solids {
                     let (sheet, depth) = face_sheet(t.solid.plane(face), screen);
                     let turned_away = all.shadows && t.solid.turned_away(face);
                     let shadows = if all.shadows && !turned_away {
-                        shadows_on(&sheet, view, facts.casters[index].iter().copied(), screen)
+                        shadows_on(
+                            &sheet,
+                            view,
+                            facts.casters[index].iter().copied(),
+                            |_| false,
+                            screen,
+                        )
                     } else {
                         Vec::new()
                     };
@@ -347,41 +353,47 @@ fn face_sheet(face: HalfSpace<Bounded>, screen: Screen) -> (Sheet, ([f64; 3], f6
     (sheet, (depths.map(Bounded::value), error))
 }
 
-/// The pixels whose points on a sheet are in the shadows of `casters`.
+/// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead` of all the sheet's pixels it is
+/// not asked whether it is.
 pub(super) fn shadows_on(
     sheet: &Sheet,
     view: &View<Bounded>,
     casters: impl Iterator<Item = u16>,
+    is_ahead: impl Fn(usize) -> bool,
     screen: Screen,
 ) -> Vec<Shape> {
     let to_light = view.shading.to_light;
     let shape = |caster: u16| {
         let caster = usize::from(caster);
+        let is_ahead = is_ahead(caster);
         match view.spheres.get(caster) {
             Some(sphere) => {
-                let before = HalfSpace {
+                let before = (!is_ahead).then(|| HalfSpace {
                     normal: -to_light.vector,
                     at: sphere.center,
                     closed: false,
                     border: None,
-                };
+                });
+                let before = before
+                    .iter()
+                    .map(|half_space| HalfPlane::of(half_space, sheet, screen));
                 let ellipse = Ellipse::of(
                     (sphere.center, sphere.radius),
                     (to_light.vector, to_light.squared_length),
                     sheet,
                     screen,
                 );
-                Shape::new(
-                    vec![HalfPlane::of(&before, sheet, screen)],
-                    Some(ellipse),
-                    screen,
-                )
+                Shape::new(before.collect(), Some(ellipse), screen)
             }
             None => {
                 let t = &view.tetrahedra[caster - view.spheres.len()];
-                let ahead = t.solid.ahead(&t.from_light);
-                let planes = ahead.map(|half_space| HalfPlane::of(&half_space, sheet, screen));
-                Shape::new(planes.collect(), None, screen)
+                let plane = |half_space| HalfPlane::of(&half_space, sheet, screen);
+                let planes = if is_ahead {
+                    t.solid.met(&t.from_light).map(plane).collect()
+                } else {
+                    t.solid.ahead(&t.from_light).map(plane).collect()
+                };
+                Shape::new(planes, None, screen)
             }
         }
     };

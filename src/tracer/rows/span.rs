@@ -64,15 +64,19 @@ impl Span {
         }
     }
 
-    /// Adds the columns at which `holds` gives another answer than one to the left.
-    pub(super) fn cut(&self, cuts: &mut Vec<u32>) {
-        if !self.is_none() {
-            cuts.extend([
-                self.possible.0,
-                self.certain.0,
-                self.certain.1,
-                self.possible.1,
-            ]);
+    /// Adds the columns between `from` and `to` at which `holds` gives another answer than one to the left.
+    pub(super) fn cut(&self, (from, to): (u32, u32), cuts: &mut Vec<u32>) {
+        let mut add = |column: u32| {
+            if column > from && column < to {
+                cuts.push(column);
+            }
+        };
+        add(self.possible.0);
+        add(self.possible.1);
+        // Mostly all is known.
+        if self.certain != self.possible {
+            add(self.certain.0);
+            add(self.certain.1);
         }
     }
 }
