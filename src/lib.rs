@@ -41,7 +41,7 @@
 //! cosine are those of the f64 α taken exactly, and every number of a scene is its f64 taken exactly. What the ray meets first,
 //! whether a point is in shadow, what the surface mirrors: these are signs of real numbers, and touching counts as meeting. A
 //! sample is the real number that equation 4-1 gives, rounded once to the nearest f32. [`Kernel::Exact`] returns just that, on every
-//! machine, with any number of threads.
+//! machine, with any vector instructions and any number of threads.
 //!
 //! # What was left out, and why
 //!
@@ -50,6 +50,7 @@
 //!   does not need is not modelled.
 //! - No platform libm: sines and cosines are correctly rounded, highlights use arithmetic only, or `libm` in plain Rust.
 //! - No fused multiply-add: it would give other bits, or be slow, where the processor has none.
+//! - No tree over the solids: rays are parallel, so every solid knows the rows and columns that it can touch.
 
 pub mod camera;
 pub mod difference;

@@ -1,7 +1,8 @@
 //! Scene, stage and α in; image out.
 //!
 //! Every formula of the picture is written once, over an abstract number: a line and a [sphere](self), a line and a
-//! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number.
+//! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number. Most pixels are not asked one by
+//! one: where borders cross a row is computed from the same formulas, and what lies between them is filled or shaded at once.
 
 mod decision;
 mod explain;

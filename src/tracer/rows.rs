@@ -4,6 +4,24 @@
 //! pixels show the same: one colour, which is filled in, or a sphere in the light, which is shaded many pixels at a time
 //! (`ball.rs`, `lanes.rs`). All of this is f64 with proven bounds. A pixel that the bounds leave in doubt is asked for by itself, of the
 //! formulas that everything is derived from.
+//!
+//! # How it got there
+//!
+//! Milliseconds a frame of the built-in scene's stage 6 at N = 500, by `exact` on one thread of an AMD EPYC (Zen 5), which fills the
+//! same picture in 0.03: what was expected, what was changed, and what came of it.
+//!
+//! - Every pixel by itself took about 10. Most pixels have the colour of their neighbour, so rows were cut and filled: 0.97, of
+//!   which nearly half went to 840 pixels in doubt.
+//! - One bound for all pixels of a sphere is that of its rim, where a root multiplies errors, and of its highlight, where the
+//!   exponent does. Bounds by how far inside the outline a pixel is, and with the highlight only where there is one, leave a few
+//!   pixels in doubt. Closures handed to `map` are compiled without the vector instructions around them, so none are left: 0.29.
+//! - Sine and cosine in arbitrary precision were a tenth of what remained. A series in double-doubles, and no pool for one thread:
+//!   0.23.
+//! - Pixels turned away from the light need no colour computed: 0.226.
+//! - Dead ends, all within the noise: a fixed-length interleave of the channels, fewer half-planes for shadows on the surface,
+//!   fewer cuts to sort, one codegen unit.
+//!
+//! What is left is the structure of rows (0.1), shading (0.06), filling (0.03), and what a frame needs before its first row (0.013).
 
 mod ball;
 mod lanes;

@@ -110,7 +110,6 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
             let (high_lower, high_upper) = lit(simd, shade, m, &high);
             let dark = S::mask32s::from_bitmask(simd, in_shadow);
             let mut channels = [zero; 3];
-            #[expect(clippy::needless_range_loop, reason = "five arrays go together")]
             for i in 0..3 {
                 let lower = low_lower[i].narrow(high_lower[i]);
                 let upper = low_upper[i].narrow(high_upper[i]);
