@@ -203,7 +203,7 @@ impl<'a, R: Real> Picture<'a, R> {
         }
         Ok(match hit {
             Some((solid, hit)) => {
-                let in_shadow = self.in_shadow(&self.view, &hit)?;
+                let in_shadow = self.in_shadow(&self.view, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);
                 (Decision::Solid(seen), normal_of(seen, &hit))
             }
@@ -249,7 +249,7 @@ impl<'a, R: Real> Picture<'a, R> {
                     .view
                     .first_hit(pixel, &ray, Reach::Ahead, Solids::All)?
             {
-                let in_shadow = self.in_shadow(&mirror.view, &hit)?;
+                let in_shadow = self.in_shadow(&mirror.view, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);
                 return Ok((Decision::Mirrored(seen), normal_of(seen, &hit)));
             }
@@ -258,10 +258,10 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// Whether a point of a solid is in shadow.
-    fn in_shadow(&self, view: &View<R>, hit: &Hit<R>) -> Result<bool, R::Doubt> {
+    fn in_shadow(&self, view: &View<R>, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
         let turned_away = || view.shading.facing_light(&hit.normal).map(Ordering::is_le);
-        let by_solid = || view.is_shadowed(&ray);
+        let by_solid = || view.is_shadowed_by(&self.scene.facts().casters[solid], &ray);
         let by_surface = || {
             self.floor
                 .as_ref()

@@ -408,6 +408,20 @@ impl<R: Real> View<R> {
         any(self.each_ahead(ray))
     }
 
+    /// Whether any of these does.
+    pub(super) fn is_shadowed_by(&self, casters: &[u16], ray: &Line<R>) -> Result<bool, R::Doubt> {
+        any(casters.iter().map(|&caster| {
+            let caster = usize::from(caster);
+            match self.spheres.get(caster) {
+                Some(sphere) => sphere.is_ahead(ray),
+                None => {
+                    let t = &self.tetrahedra[caster - self.spheres.len()];
+                    t.solid.is_ahead(&t.from_light, ray)
+                }
+            }
+        }))
+    }
+
     /// The ray toward the light from a point of a sphere or plane, outward.
     pub(super) fn ray_to_light(&self, origin: Vector<R>, leaves: Support) -> Line<R> {
         Line {
