@@ -1,19 +1,20 @@
 //! The window: one picture, redrawn when the angle moves or the window asks.
 //!
 //! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place: the keys are one table
-//! ([`key_table`]), α is a clock of its own that knows no window, the window knows no scene, and the application between them traces
-//! a picture only when stage or α changed.
+//! ([`key_table`]), α is a clock of its own that knows no window, the window knows no scene, pictures are traced on a thread of their own,
+//! and the application between them asks for one only when stage or α changed.
 
 mod action;
 mod app;
 mod error;
 mod frames;
-mod picture;
 mod playback;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
 mod snapshot;
+mod tracing;
 mod window;
+mod worker;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod x11;
 
@@ -118,5 +119,5 @@ impl fmt::Display for Counts {
 /// # Panics
 /// On macOS and Windows, where the calling thread is not the main thread.
 pub fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
-    app::App::new(options, report)?.run()
+    app::run(options, report)
 }

@@ -141,6 +141,36 @@ fn a_static_stage_is_traced_and_uploaded_once_and_then_sleeps() {
 }
 
 #[test]
+fn a_picture_that_takes_long_keeps_the_window_from_nothing() {
+    // Certified pictures of this size take many seconds; the first stage needs no arithmetic.
+    let arguments = [
+        "view",
+        "--stage",
+        "1",
+        "--size",
+        "3000",
+        "--kernel",
+        "reference",
+    ];
+    let Some(mut session) = Session::start(&arguments) else {
+        return;
+    };
+    for stage in ["6", "5", "4", "6"] {
+        session.type_keys(stage);
+        session.titled(&[&format!("firsthit — {stage} ")]);
+    }
+    session.resize(300, 300);
+    session.shows(3000, Stage::Image, 0.0);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!(
+        [traces, uploads],
+        [1, 1],
+        "the others were never waited for"
+    );
+}
+
+#[test]
 fn the_paused_animation_sleeps() {
     let Some(session) = Session::start(&["view", "--size", "50"]) else {
         return;

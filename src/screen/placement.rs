@@ -14,6 +14,12 @@ pub struct Placement {
 }
 
 impl Placement {
+    /// No square at all: nothing is drawn.
+    pub const NOWHERE: Placement = Placement {
+        origin: IVec2::ZERO,
+        extent: 0,
+    };
+
     /// The largest square for a picture of `size` × `size` pixels in the middle of `surface`, width and height in pixels.
     ///
     /// The side is the largest whole multiple of `size` that fits, so that every pixel of the picture becomes a square of the same

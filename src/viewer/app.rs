@@ -13,10 +13,10 @@ use crate::{Kernel, Stage};
 
 use super::action::{Action, Press};
 use super::frames::Meter;
-use super::picture::Picture;
 use super::playback::Playback;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
+use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
 
@@ -26,21 +26,71 @@ const NUDGE: f64 = 0.05;
 /// What + and − do to the speed.
 const FASTER: f64 = 1.25;
 
+/// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
+const PATIENCE: Duration = Duration::from_millis(100);
+
 /// How soon to look again for a window that nothing can be drawn on and that does not say when that ends.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
-pub(super) struct App<'a> {
+/// Opens the viewer and stays until it is left.
+pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
+    let started = Instant::now();
+    let studio = Studio::new(&options)?;
+    let event_loop = event_loop()?;
+    let proxy = event_loop.create_proxy();
+    let tracing = Tracing::start(studio, move || {
+        // Without an event loop nobody waits for the picture.
+        let _ = proxy.send_event(());
+    })?;
+    let mut app = App {
+        started,
+        stage: options.stage,
+        kernel: options.kernel,
+        size: options.size,
+        playback: Playback::new(options.pace),
+        exit_after_frames: options.exit_after_frames,
+        report,
+        tracing,
+        shown: None,
+        view: None,
+        uploaded: false,
+        overdue: false,
+        next_frame: started,
+        modifiers: ModifiersState::empty(),
+        occluded: false,
+        minimized: false,
+        frame_time: Duration::ZERO,
+        meter: Meter::default(),
+        title: String::new(),
+        counts: Counts::default(),
+        failure: None,
+    };
+    // While the window opens the first picture is traced.
+    app.advance(started);
+    let ended = event_loop.run_app(&mut app);
+    app.leave(ended.is_ok())
+}
+
+struct App<'a> {
     started: Instant,
     stage: Stage,
     kernel: Kernel,
-    picture: Picture,
+    /// N.
+    size: u32,
     playback: Playback,
     exit_after_frames: Option<u64>,
     report: &'a mut dyn FnMut(Event),
+    tracing: Tracing,
+    /// The picture that came last.
+    shown: Option<Traced>,
     /// `None` before the first [`ApplicationHandler::resumed`], and on systems that take the window away meanwhile.
     view: Option<View>,
     /// The texture holds the picture.
     uploaded: bool,
+    /// The window has waited long enough for a picture.
+    overdue: bool,
+    /// Not before this the playing animation is drawn again.
+    next_frame: Instant,
     modifiers: ModifiersState,
     /// Other windows cover this one.
     occluded: bool,
@@ -54,39 +104,21 @@ pub(super) struct App<'a> {
     failure: Option<ViewerError>,
 }
 
-impl<'a> App<'a> {
-    pub(super) fn new(
-        options: Options,
-        report: &'a mut dyn FnMut(Event),
-    ) -> Result<App<'a>, ViewerError> {
-        Ok(App {
-            started: Instant::now(),
-            stage: options.stage,
-            kernel: options.kernel,
-            picture: Picture::new(&options)?,
-            playback: Playback::new(options.pace),
-            exit_after_frames: options.exit_after_frames,
-            report,
-            view: None,
-            uploaded: false,
-            modifiers: ModifiersState::empty(),
-            occluded: false,
-            minimized: false,
-            frame_time: Duration::ZERO,
-            meter: Meter::default(),
-            title: String::new(),
-            counts: Counts::default(),
-            failure: None,
-        })
-    }
-
-    /// Runs until the window is closed.
-    pub(super) fn run(mut self) -> Result<(), ViewerError> {
-        let ended = event_loop()?.run_app(&mut self);
+impl App<'_> {
+    /// After the last event.
+    fn leave(mut self, ended_well: bool) -> Result<(), ViewerError> {
+        self.counts.traces = self.tracing.traces;
+        for reply in self.tracing.finish() {
+            if let Reply::Saved(saved) = reply {
+                (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
+            }
+        }
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        ended.map_err(|_| ViewerError::Lost)?;
+        if !ended_well {
+            return Err(ViewerError::Lost);
+        }
         (self.report)(Event::Left(self.counts));
         Ok(())
     }
@@ -95,18 +127,33 @@ impl<'a> App<'a> {
         self.stage == Stage::Animation && !self.playback.paused()
     }
 
-    /// Makes the image the one of the present stage and α.
-    fn trace(&mut self) -> Result<(), ViewerError> {
-        if self.picture.bring(self.stage, self.playback.alpha())? {
-            self.counts.traces += 1;
-            self.uploaded = false;
+    /// The picture that should be shown.
+    fn wanted(&self) -> Frame {
+        Frame {
+            stage: self.stage,
+            alpha: self.playback.alpha(),
+            kernel: self.kernel,
         }
-        Ok(())
     }
 
-    /// Shows the present stage and α, and sees to the next frame if there is one to come.
+    /// The picture that should be shown is not there yet.
+    fn waiting(&self) -> bool {
+        self.tracing
+            .is_behind(self.shown.as_ref().map(|shown| shown.frame))
+    }
+
+    /// Asks for the next picture: of the present α, which moves on at `now` if the animation plays and no picture of it is due.
+    fn advance(&mut self, now: Instant) {
+        if self.playing() && !self.waiting() {
+            self.playback.advance(now);
+        }
+        self.tracing.wish(self.wanted());
+    }
+
+    /// Shows the last picture, and sees to the next one if there is one to come.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let start = Instant::now();
+        let overdue = std::mem::take(&mut self.overdue);
         event_loop.set_control_flow(ControlFlow::Wait);
         if !self.visible() {
             self.playback.hold();
@@ -116,14 +163,30 @@ impl<'a> App<'a> {
             }
             return Ok(());
         }
-        if self.playing() {
-            self.playback.advance(start);
+        if self.counts.draws == 0 && self.shown.is_some() {
+            // Opening the window was no part of the animation.
+            self.playback.count_from(start - self.frame_time);
         }
-        self.trace()?;
+        // The next picture is traced while this one is drawn.
+        if !self.is_last() {
+            self.advance(start);
+        }
+        if self.uploaded && self.waiting() && !overdue {
+            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
+            return Ok(());
+        }
         let Some(view) = &mut self.view else {
             return Ok(());
         };
-        let image = (!self.uploaded).then(|| self.picture.image());
+        let Some(shown) = &self.shown else {
+            if overdue {
+                view.clear()?;
+            } else {
+                event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
+            }
+            return Ok(());
+        };
+        let image = (!self.uploaded).then_some(&*shown.image);
         self.counts.uploads += u64::from(image.is_some());
         self.uploaded = view.draw(image)?;
         if !self.uploaded {
@@ -140,8 +203,15 @@ impl<'a> App<'a> {
         if self.playing() && self.meter.frame(start) {
             self.look_around();
         }
-        self.schedule(event_loop, start);
+        self.next_frame = start + self.frame_time;
+        self.schedule(event_loop);
         Ok(())
+    }
+
+    /// Whether a frame that is drawn now is the last one.
+    fn is_last(&self) -> bool {
+        self.exit_after_frames
+            .is_some_and(|frames| self.counts.draws + 1 >= frames)
     }
 
     /// Whether there is anything to draw on that is seen.
@@ -164,29 +234,51 @@ impl<'a> App<'a> {
         self.retitle();
     }
 
-    /// After a frame that was begun at `start`: the next one, if it comes by itself.
-    fn schedule(&mut self, event_loop: &ActiveEventLoop, start: Instant) {
+    /// After a frame: the next one, if it comes by itself.
+    fn schedule(&mut self, event_loop: &ActiveEventLoop) {
         let last = self
             .exit_after_frames
             .is_some_and(|frames| self.counts.draws >= frames);
         if last {
             event_loop.exit();
-            return;
+        } else if !self.waiting() && (self.playing() || self.exit_after_frames.is_some()) {
+            self.draw_in_time(event_loop);
         }
-        let more = self.playing() || self.exit_after_frames.is_some();
-        let Some(view) = self.view.as_ref().filter(|_| more) else {
-            return;
-        };
-        // A display that waits for its own refresh has kept us about as long as it shows a frame; one that does not is waited for here.
-        let next = start + self.frame_time;
-        if Instant::now() < next {
-            event_loop.set_control_flow(ControlFlow::WaitUntil(next));
-        } else {
+    }
+
+    /// Draws the next frame when the display has shown the last one: one that waits for its own refresh has kept us about as long, one
+    /// that does not is waited for here.
+    fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
+        if Instant::now() < self.next_frame {
+            event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
+        } else if let Some(view) = &self.view {
             view.window().request_redraw();
         }
     }
 
-    fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) -> Result<(), ViewerError> {
+    /// Takes what the tracing thread has done.
+    fn receive(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
+        while let Some(reply) = self.tracing.reply() {
+            match reply {
+                Reply::Traced(traced) => {
+                    // A stage that was left meanwhile is not shown any more; an angle is, or one that moves fast would never be seen.
+                    let Frame { stage, kernel, .. } = traced.frame;
+                    if (stage, kernel) == (self.stage, self.kernel) {
+                        self.shown = Some(traced);
+                        self.uploaded = false;
+                        self.draw_in_time(event_loop);
+                    }
+                }
+                Reply::Saved(saved) => {
+                    (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
+                }
+                Reply::Failed(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         match action {
             Action::Stage(stage) if stage == self.stage => {}
             Action::Stage(Stage::Animation) => self.stage = Stage::Animation,
@@ -209,8 +301,8 @@ impl<'a> App<'a> {
             Action::Faster => self.playback.scale(FASTER),
             Action::Slower => self.playback.scale(1.0 / FASTER),
             Action::Zero => self.playback.zero(),
-            Action::SavePng => self.save(Format::Png)?,
-            Action::SaveExr => self.save(Format::Exr)?,
+            Action::SavePng => self.save(Format::Png),
+            Action::SaveExr => self.save(Format::Exr),
             Action::FullScreen => {
                 if let Some(view) = &self.view {
                     view.toggle_full_screen();
@@ -222,13 +314,17 @@ impl<'a> App<'a> {
             self.meter.stop();
         }
         self.retitle();
-        let shown = (self.stage, self.playback.alpha());
-        if (self.playing() || !self.uploaded || !self.picture.is(shown))
-            && let Some(view) = &self.view
-        {
+        if self.playing() {
+            self.ask_for_redraw();
+        } else {
+            self.tracing.wish(self.wanted());
+        }
+    }
+
+    fn ask_for_redraw(&self) {
+        if let Some(view) = &self.view {
             view.window().request_redraw();
         }
-        Ok(())
     }
 
     /// Pauses the animation if it is on.
@@ -238,14 +334,13 @@ impl<'a> App<'a> {
         }
     }
 
-    fn save(&mut self, format: Format) -> Result<(), ViewerError> {
-        self.trace()?;
-        let event = match super::snapshot::save(self.picture.image(), self.stage, format) {
-            Ok(path) => Event::Saved(path),
-            Err(error) => Event::NotSaved(error),
+    fn save(&self, format: Format) {
+        let frame = match &self.shown {
+            // What a person sees is what is saved, although the next picture is on its way.
+            Some(shown) if self.playing() => shown.frame,
+            _ => self.wanted(),
         };
-        (self.report)(event);
-        Ok(())
+        self.tracing.save(frame, format);
     }
 
     /// Writes stage, kernel, α and frames a second into the title, where they changed.
@@ -271,7 +366,7 @@ impl<'a> App<'a> {
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
-        let view = View::open(event_loop, self.picture.image().size())?;
+        let view = View::open(event_loop, self.size)?;
         view.window().request_redraw();
         self.frame_time = view.frame_time();
         self.view = Some(view);
@@ -307,12 +402,16 @@ impl ApplicationHandler for App<'_> {
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
-        if let StartCause::ResumeTimeReached { .. } = cause
-            && let Some(view) = &self.view
-        {
+        if let StartCause::ResumeTimeReached { .. } = cause {
             event_loop.set_control_flow(ControlFlow::Wait);
-            view.window().request_redraw();
+            self.overdue = true;
+            self.ask_for_redraw();
         }
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, (): ()) {
+        let received = self.receive(event_loop);
+        self.check(event_loop, received);
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
@@ -329,8 +428,7 @@ impl ApplicationHandler for App<'_> {
                 ..
             } if event.state.is_pressed() => {
                 if let Some(action) = self.pressed(&event) {
-                    let done = self.act(event_loop, action);
-                    self.check(event_loop, done);
+                    self.act(event_loop, action);
                 }
             }
             WindowEvent::Resized(size) => {

@@ -50,6 +50,9 @@ pub enum ViewerError {
     /// There is no room for the picture.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// The system has no thread left.
+    #[error("no thread can be started to trace on ({0}): end other programs")]
+    Thread(std::io::Error),
     /// The picture cannot be traced.
     #[error(transparent)]
     Trace(#[from] TraceError),

@@ -83,6 +83,13 @@ impl Playback {
         }
     }
 
+    /// Time counts from `start` on, if it counted already: what was before that took no part in the animation.
+    pub(super) fn count_from(&mut self, start: Instant) {
+        if self.last.is_some() {
+            self.last = Some(start);
+        }
+    }
+
     /// No time counts from here to the next [`Playback::advance`]: the animation is not seen.
     pub(super) fn hold(&mut self) {
         self.last = None;

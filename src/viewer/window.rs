@@ -172,7 +172,18 @@ impl View {
         if let Some(image) = image {
             drawing.screen.upload(image)?;
         }
-        let placement = Placement::fit(self.surface, self.picture);
+        self.present(Placement::fit(self.surface, self.picture))
+    }
+
+    /// Draws a window without a picture.
+    pub(super) fn clear(&mut self) -> Result<bool, ViewerError> {
+        self.present(Placement::NOWHERE)
+    }
+
+    fn present(&mut self, placement: Placement) -> Result<bool, ViewerError> {
+        let Some(drawing) = &mut self.drawing else {
+            return Err(ViewerError::Lost);
+        };
         drawing.screen.draw(self.surface, placement);
         self.window.pre_present_notify();
         if drawing.surface.swap_buffers(&drawing.context).is_ok() {

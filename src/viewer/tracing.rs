@@ -1,0 +1,175 @@
+//! Pictures traced, saved and explained on a thread of their own.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::image::{Format, SaveError};
+use crate::{Image, Kernel, Scene, Stage, Tracer};
+
+use super::snapshot;
+use super::worker::Worker;
+use super::{Options, ViewerError};
+
+/// What a picture is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    pub(super) stage: Stage,
+    pub(super) alpha: f64,
+    pub(super) kernel: Kernel,
+}
+
+/// A traced picture.
+#[derive(Clone)]
+pub(super) struct Traced {
+    pub(super) frame: Frame,
+    pub(super) image: Arc<Image>,
+}
+
+/// What the thread is asked for.
+enum Task {
+    Trace(Frame),
+    Save(Frame, Format),
+}
+
+/// What it answers.
+pub(super) enum Reply {
+    /// A picture that was wished for.
+    Traced(Traced),
+    /// What became of a picture that was to be saved.
+    Saved(Result<PathBuf, SaveError>),
+    /// Something is wanting that no other picture needs less of.
+    Failed(ViewerError),
+}
+
+/// The tracer, and the pictures it writes to.
+pub(super) struct Studio {
+    scene: Scene,
+    tracer: Tracer,
+    threads: usize,
+    size: u32,
+    /// Every picture that was ever handed out. One that nobody holds any more is traced over.
+    pictures: Vec<Arc<Image>>,
+    last: Option<Traced>,
+    traces: u64,
+}
+
+impl Studio {
+    /// # Errors
+    /// Where there are no threads, or no room for the picture.
+    pub(super) fn new(options: &Options) -> Result<Studio, ViewerError> {
+        Ok(Studio {
+            scene: options.scene.clone(),
+            tracer: Tracer::new(options.kernel, options.threads)?,
+            threads: options.threads,
+            size: options.size,
+            pictures: vec![Arc::new(Image::new(options.size)?)],
+            last: None,
+            traces: 0,
+        })
+    }
+
+    /// The picture of `frame`; the last one is not traced again.
+    fn trace(&mut self, frame: Frame) -> Result<Traced, ViewerError> {
+        if let Some(last) = self.last.as_ref().filter(|last| last.frame == frame) {
+            return Ok(last.clone());
+        }
+        if self.tracer.kernel() != frame.kernel {
+            self.tracer = Tracer::new(frame.kernel, self.threads)?;
+        }
+        self.last = None;
+        let mut image = self.free_picture()?;
+        if let Some(image) = Arc::get_mut(&mut image) {
+            self.tracer
+                .trace(&self.scene, frame.stage, frame.alpha, image)?;
+        }
+        let traced = Traced {
+            frame,
+            image: image.clone(),
+        };
+        self.traces += 1;
+        self.pictures.push(image);
+        self.last = Some(traced.clone());
+        Ok(traced)
+    }
+
+    /// A picture that nobody looks at, taken from the others.
+    fn free_picture(&mut self) -> Result<Arc<Image>, ViewerError> {
+        let free = self
+            .pictures
+            .iter_mut()
+            .position(|picture| Arc::get_mut(picture).is_some());
+        Ok(match free {
+            Some(free) => self.pictures.swap_remove(free),
+            None => Arc::new(Image::new(self.size)?),
+        })
+    }
+}
+
+/// The thread that traces.
+pub(super) struct Tracing {
+    worker: Worker<Task, (u64, Reply)>,
+    /// The frame that was wished for last.
+    wished: Option<Frame>,
+    /// Pictures traced so far.
+    pub(super) traces: u64,
+}
+
+impl Tracing {
+    /// Starts the thread; `wake` is called there when there is a reply.
+    ///
+    /// # Errors
+    /// Where the system has no thread left.
+    pub(super) fn start(
+        mut studio: Studio,
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<Tracing, ViewerError> {
+        let worker = Worker::start("tracing", wake, move |task, reply| {
+            let answer = match task {
+                Task::Trace(frame) => match studio.trace(frame) {
+                    Ok(traced) => Reply::Traced(traced),
+                    Err(error) => Reply::Failed(error),
+                },
+                Task::Save(frame, format) => match studio.trace(frame) {
+                    Ok(traced) => Reply::Saved(snapshot::save(&traced.image, frame.stage, format)),
+                    Err(error) => Reply::Failed(error),
+                },
+            };
+            reply((studio.traces, answer));
+        })
+        .map_err(ViewerError::Thread)?;
+        Ok(Tracing {
+            worker,
+            wished: None,
+            traces: 0,
+        })
+    }
+
+    /// Wishes for the picture of `frame`, unless that was the last wish.
+    pub(super) fn wish(&mut self, frame: Frame) {
+        if self.wished != Some(frame) {
+            self.wished = Some(frame);
+            self.worker.wish(Task::Trace(frame));
+        }
+    }
+
+    /// Whether a picture was wished for that is not `shown`.
+    pub(super) fn is_behind(&self, shown: Option<Frame>) -> bool {
+        self.wished != shown
+    }
+
+    /// Has the picture of `frame` saved.
+    pub(super) fn save(&self, frame: Frame, format: Format) {
+        self.worker.send(Task::Save(frame, format));
+    }
+
+    pub(super) fn reply(&mut self) -> Option<Reply> {
+        let (traces, reply) = self.worker.reply()?;
+        self.traces = traces;
+        Some(reply)
+    }
+
+    /// Waits for what has to be done, and gives the last replies.
+    pub(super) fn finish(self) -> impl Iterator<Item = Reply> {
+        self.worker.finish().into_iter().map(|(_, reply)| reply)
+    }
+}
