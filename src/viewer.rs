@@ -9,6 +9,7 @@ mod app;
 mod error;
 mod frames;
 mod playback;
+mod pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
 mod snapshot;
@@ -17,6 +18,7 @@ mod window;
 mod worker;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod x11;
+mod zoom;
 
 use std::fmt;
 use std::path::PathBuf;

@@ -30,7 +30,7 @@ use firsthit::Stage;
 use firsthit::camera::{ROUND, frame_angle};
 use pixels::traced;
 use program::{Program, wait_for};
-use session::{ESCAPE, HOME, LEFT, RIGHT, SPACE, Session};
+use session::{ESCAPE, HOME, LEFT, LEFT_BUTTON, RIGHT, SPACE, Session, WHEEL_DOWN, WHEEL_UP};
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{ConnectionExt as _, CreateWindowAux, Window, WindowClass};
 use xvfb::Xvfb;
@@ -482,6 +482,47 @@ fn q_esc_and_the_window_manager_leave() {
         leave(&session);
         session.program.left();
     }
+}
+
+#[test]
+fn the_wheel_zooms_around_the_pointer_and_dragging_moves() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    session.resize(400, 300);
+    session.shows(40, Stage::Reflection, 0.0);
+    let picture = traced(40, Stage::Reflection, 0.0);
+    // Seven times, and so 60 and 10 pixels from the window's corner; the pixel of the picture under the pointer stays.
+    let pointer = [151, 300 - 1 - 82];
+    session.point(151, 82);
+    // winit counts a faked wheel's way back as well: two notches, 8 times and 10 times.
+    session.click(WHEEL_UP);
+    let kept = |pointer: i64, margin: i64| {
+        let mut corner = margin;
+        for [from, to] in [[7, 8], [8, 10]] {
+            let (pixel, within) = ((pointer - corner) / from, (pointer - corner) % from);
+            corner = pointer - (to * pixel + (2 * within + 1) * to / (2 * from));
+        }
+        corner
+    };
+    let corner = [kept(pointer[0], 60), kept(pointer[1], 10)];
+    session.shows_placed(&picture, corner, 10 * 40);
+    // Nine pixels to the right and twenty down.
+    session.button(LEFT_BUTTON, true);
+    for step in 1..=9 {
+        session.point(151 + step, 82 + 2 * step);
+    }
+    session.point(160, 102);
+    session.button(LEFT_BUTTON, false);
+    session.point(200, 200);
+    session.shows_placed(&picture, [corner[0] + 9, corner[1] - 20], 10 * 40);
+    session.type_keys("z");
+    session.shows(40, Stage::Reflection, 0.0);
+    session.click(WHEEL_DOWN);
+    session.shows(40, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1]);
 }
 
 /// The program, on a display that cannot be had, says so in one line and ends with status 1.

@@ -1,6 +1,6 @@
 //! Where the picture lies in a window or framebuffer: the letterbox.
 
-use glam::{IVec2, UVec2};
+use glam::{DVec2, I64Vec2, IVec2, UVec2};
 
 /// The square of a framebuffer that the picture fills, in pixels from the framebuffer's bottom left corner.
 ///
@@ -34,6 +34,63 @@ impl Placement {
         Placement {
             origin: ((surface - extent) / 2).as_ivec2(),
             extent,
+        }
+    }
+
+    /// The largest side for which a picture of `size` × `size` pixels is drawn exactly: N E must stay below 2³¹.
+    pub fn max_extent(size: u32) -> u32 {
+        (u32::MAX / 2) / size.max(1)
+    }
+
+    /// The pixel, column and row, of a picture of `size` × `size` pixels that the pixel `window` of the framebuffer shows; both count
+    /// from the bottom left corner. `None` beside the picture.
+    pub fn pixel_at(&self, window: IVec2, size: u32) -> Option<UVec2> {
+        let place = window.as_i64vec2() - self.origin.as_i64vec2();
+        let extent = i64::from(self.extent);
+        if place.min_element() < 0 || place.max_element() >= extent {
+            return None;
+        }
+        Some(((2 * place + 1) * i64::from(size) / (2 * extent)).as_uvec2())
+    }
+
+    /// The pixels of the framebuffer that show the picture's pixel at column and row `pixel`: the bottom left one, and the one past the
+    /// top right one. Both are the same where the picture is drawn too small for this pixel to be seen.
+    pub fn square_of(&self, pixel: UVec2, size: u32) -> [IVec2; 2] {
+        let (extent, size) = (i64::from(self.extent), i64::from(size.max(1)));
+        let first = |pixel: I64Vec2| {
+            // The first p with 2 p + 1 ≥ 2 E pixel / N.
+            let doubled = 2 * extent * pixel - size;
+            let first = (doubled + (2 * size - 1)).div_euclid(I64Vec2::splat(2 * size));
+            (first + self.origin.as_i64vec2()).as_ivec2()
+        };
+        let pixel = pixel.as_i64vec2();
+        [first(pixel), first(pixel + 1)]
+    }
+
+    /// The picture of `size` × `size` pixels with sides of `extent`, so that what the pixel `window` of the framebuffer shows stays
+    /// there; the pixel of the picture exactly, where it is drawn larger than one of the framebuffer before and after.
+    pub fn zoomed(&self, window: IVec2, extent: u32, size: u32) -> Placement {
+        let scale = |extent: u32| f64::from(extent) / f64::from(size);
+        // In pixels of the picture, from its corner.
+        let place = ((window - self.origin).as_dvec2() + 0.5) / scale(self.extent);
+        // Whole pixels of the picture apart from the rest, so that no rounding leads from one into the next.
+        let whole = place.floor();
+        let within: DVec2 = (place - whole) * scale(extent);
+        let shift = (whole * scale(extent)).floor() + within.floor();
+        Placement {
+            origin: window - shift.as_ivec2(),
+            extent,
+        }
+    }
+
+    /// The same, moved as little as it takes to have the middle of `surface` within the picture.
+    pub fn around_the_middle(&self, surface: UVec2) -> Placement {
+        let middle = surface.as_i64vec2() / 2;
+        let last = i64::from(self.extent.saturating_sub(1));
+        let origin = self.origin.as_i64vec2().clamp(middle - last, middle);
+        Placement {
+            origin: origin.as_ivec2(),
+            extent: self.extent,
         }
     }
 }
@@ -85,5 +142,77 @@ mod tests {
             fit(u32::MAX, u32::MAX, 1 << 14),
             (8191, 8191, u32::MAX - 16383)
         );
+    }
+
+    /// Placements of all kinds: smaller than the picture, as large, whole multiples, and others; inside the window and reaching out.
+    fn placements(size: u32) -> impl Iterator<Item = Placement> {
+        let extents = [
+            1,
+            3,
+            size - 1,
+            size,
+            size + 1,
+            2 * size,
+            3 * size + 2,
+            5 * size,
+        ];
+        let origins = [IVec2::ZERO, IVec2::new(7, -3), IVec2::new(-40, 11)];
+        extents
+            .into_iter()
+            .flat_map(move |extent| origins.map(|origin| Placement { origin, extent }))
+    }
+
+    #[test]
+    fn from_the_window_to_the_picture_and_back() {
+        let size = 13;
+        for placement in placements(size) {
+            let mut shown = vec![0_u64; (size * size) as usize];
+            let extent = placement.extent as i32;
+            for y in -50..extent + 50 {
+                for x in -50..extent + 50 {
+                    let window = IVec2::new(x, y);
+                    let inside = window.cmpge(placement.origin).all()
+                        && window.cmplt(placement.origin + extent).all();
+                    let pixel = placement.pixel_at(window, size);
+                    assert_eq!(pixel.is_some(), inside, "{placement:?} {window}");
+                    if let Some(pixel) = pixel {
+                        let [first, end] = placement.square_of(pixel, size);
+                        assert!(window.cmpge(first).all() && window.cmplt(end).all());
+                        shown[(pixel.y * size + pixel.x) as usize] += 1;
+                    }
+                }
+            }
+            // No pixel's square holds more than the pixels of the window that lead to it.
+            for (number, shown) in (0..).zip(shown) {
+                let pixel = UVec2::new(number % size, number / size);
+                let [first, end] = placement.square_of(pixel, size);
+                let sides = (end - first).as_u64vec2();
+                assert_eq!(sides.x * sides.y, shown, "{placement:?} {pixel}");
+            }
+        }
+    }
+
+    #[test]
+    fn zooming_keeps_the_pixel_under_the_pointer() {
+        let size = 13;
+        for placement in placements(size).filter(|placement| placement.extent >= size) {
+            for multiple in 1..70 {
+                for window in [IVec2::new(0, 8), IVec2::new(7, 9), IVec2::new(12, 12)] {
+                    let zoomed = placement.zoomed(window, multiple * size, size);
+                    let before = placement.pixel_at(window, size);
+                    if before.is_some() {
+                        assert_eq!(zoomed.pixel_at(window, size), before);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_extent_is_still_drawn_exactly() {
+        for size in [1, 500, 16384] {
+            let product = u64::from(Placement::max_extent(size)) * u64::from(size);
+            assert!(product < 1 << 31 && product + u64::from(size) >= (1 << 31) - 1);
+        }
     }
 }

@@ -18,6 +18,7 @@ pub(super) enum Action {
     Zero,
     SavePng,
     SaveExr,
+    Fit,
     FullScreen,
     Leave,
 }
@@ -141,6 +142,11 @@ const BINDINGS: &[Binding] = &[
         places: &[C::KeyS],
         shift: Some(true),
         ..Binding::new("Shift+S", "save the traced picture as an EXR", A::SaveExr)
+    },
+    Binding {
+        characters: &['z'],
+        places: &[C::KeyZ],
+        ..Binding::new("Z", "the whole picture again, after wheel and drag", A::Fit)
     },
     Binding {
         characters: &['f'],

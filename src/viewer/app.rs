@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use winit::application::ApplicationHandler;
-use winit::event::{KeyEvent, StartCause, WindowEvent};
+use winit::event::{KeyEvent, MouseButton, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 use winit::window::WindowId;
@@ -14,6 +14,7 @@ use crate::{Kernel, Stage};
 use super::action::{Action, Press};
 use super::frames::Meter;
 use super::playback::Playback;
+use super::pointer::{Gesture, Pointer};
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
 use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
@@ -57,6 +58,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         overdue: false,
         next_frame: started,
         modifiers: ModifiersState::empty(),
+        pointer: Pointer::default(),
         occluded: false,
         minimized: false,
         frame_time: Duration::ZERO,
@@ -87,11 +89,12 @@ struct App<'a> {
     view: Option<View>,
     /// The texture holds the picture.
     uploaded: bool,
-    /// The window has waited long enough for a picture.
+    /// The window is drawn again without waiting for the picture that is on its way: it took too long, or something else changed.
     overdue: bool,
     /// Not before this the playing animation is drawn again.
     next_frame: Instant,
     modifiers: ModifiersState,
+    pointer: Pointer,
     /// Other windows cover this one.
     occluded: bool,
     /// The window is an icon.
@@ -303,6 +306,12 @@ impl App<'_> {
             Action::Zero => self.playback.zero(),
             Action::SavePng => self.save(Format::Png),
             Action::SaveExr => self.save(Format::Exr),
+            Action::Fit => {
+                if let Some(view) = &mut self.view {
+                    view.fit();
+                }
+                self.touch();
+            }
             Action::FullScreen => {
                 if let Some(view) = &self.view {
                     view.toggle_full_screen();
@@ -319,6 +328,24 @@ impl App<'_> {
         } else {
             self.tracing.wish(self.wanted());
         }
+    }
+
+    /// Something but the picture looks different now.
+    fn touch(&mut self) {
+        self.overdue = true;
+        self.ask_for_redraw();
+    }
+
+    /// What the pointer asks for.
+    fn point(&mut self, gesture: Gesture) {
+        let Some(view) = &mut self.view else {
+            return;
+        };
+        match gesture {
+            Gesture::Drag { by } => view.drag(by),
+            Gesture::Wheel { steps, at } => view.zoom(steps, at),
+        }
+        self.touch();
     }
 
     fn ask_for_redraw(&self) {
@@ -429,6 +456,24 @@ impl ApplicationHandler for App<'_> {
             } if event.state.is_pressed() => {
                 if let Some(action) = self.pressed(&event) {
                     self.act(event_loop, action);
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                if let Some(view) = &self.view
+                    && let Some(gesture) = self.pointer.moved(view.window_pixel(position))
+                {
+                    self.point(gesture);
+                }
+            }
+            WindowEvent::CursorLeft { .. } => self.pointer.left(),
+            WindowEvent::MouseInput {
+                state,
+                button: MouseButton::Left,
+                ..
+            } => self.pointer.pressed(state.is_pressed()),
+            WindowEvent::MouseWheel { delta, .. } => {
+                if let Some(gesture) = self.pointer.wheel(delta) {
+                    self.point(gesture);
                 }
             }
             WindowEvent::Resized(size) => {

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::rc::Rc;
 use std::time::Duration;
 
-use glam::UVec2;
+use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 use glutin::config::{ColorBufferType, Config, ConfigTemplateBuilder};
 use glutin::context::{
@@ -14,7 +14,7 @@ use glutin::display::{Display, DisplayApiPreference, GetGlDisplay as _};
 use glutin::prelude::*;
 use glutin::surface::{Surface, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle, RawDisplayHandle, RawWindowHandle};
-use winit::dpi::PhysicalSize;
+use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowAttributes};
 
@@ -23,6 +23,7 @@ use crate::screen::{Placement, Screen};
 
 use super::ViewerError;
 use super::error::reason;
+use super::zoom::Zoom;
 
 /// The window and everything that draws in it.
 pub(super) struct View {
@@ -34,6 +35,7 @@ pub(super) struct View {
     surface: UVec2,
     /// N of the pictures that are shown.
     picture: u32,
+    zoom: Zoom,
 }
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
@@ -97,6 +99,7 @@ impl View {
             window,
             surface: UVec2::new(size.width, size.height),
             picture,
+            zoom: Zoom::default(),
         };
         view.renew()?;
         Ok(view)
@@ -137,11 +140,39 @@ impl View {
 
     /// The window has a new size, in pixels.
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
-        self.surface = UVec2::new(size.width, size.height);
+        let surface = UVec2::new(size.width, size.height);
+        self.zoom.resize(self.surface, surface);
+        self.surface = surface;
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
             drawing.surface.resize(&drawing.context, width, height);
         }
+    }
+
+    /// Where the picture lies.
+    fn placement(&self) -> Placement {
+        self.zoom.placement(self.surface, self.picture)
+    }
+
+    /// Zooms around `pointer`, a pixel of the window, by so many steps; outward where they are negative.
+    pub(super) fn zoom(&mut self, steps: i32, pointer: IVec2) {
+        self.zoom.by(steps, pointer, self.surface, self.picture);
+    }
+
+    /// Moves the picture by so many pixels.
+    pub(super) fn drag(&mut self, by: IVec2) {
+        self.zoom.drag(by, self.surface, self.picture);
+    }
+
+    /// Shows the whole picture.
+    pub(super) fn fit(&mut self) {
+        self.zoom.fit();
+    }
+
+    /// The pixel of the window at a place that winit names: both count from 0, but ours from the bottom.
+    pub(super) fn window_pixel(&self, place: PhysicalPosition<f64>) -> IVec2 {
+        let (x, y) = (place.x.floor() as i32, place.y.floor() as i32);
+        IVec2::new(x, self.surface.y as i32 - 1 - y)
     }
 
     /// How long the monitor shows a frame: 1/60 s where it does not say.
@@ -172,7 +203,7 @@ impl View {
         if let Some(image) = image {
             drawing.screen.upload(image)?;
         }
-        self.present(Placement::fit(self.surface, self.picture))
+        self.present(self.placement())
     }
 
     /// Draws a window without a picture.

@@ -60,11 +60,24 @@ pub fn letterboxed(picture: &Image, width: usize, height: usize) -> Pixels {
     } else {
         side / size * size
     };
-    let (left, bottom) = ((width - extent) / 2, (height - extent) / 2);
-    let texel = |pixel: usize, start: usize| {
-        let pixel = pixel.checked_sub(start).filter(|&pixel| pixel < extent)?;
+    let corner = [(width - extent) / 2, (height - extent) / 2].map(|margin| margin as i64);
+    placed(picture, width, height, corner, extent)
+}
+
+/// `picture` in a window as a square of `extent` pixels with its bottom left corner at `left` and `bottom`, and blue around it.
+pub fn placed(
+    picture: &Image,
+    width: usize,
+    height: usize,
+    [left, bottom]: [i64; 2],
+    extent: usize,
+) -> Pixels {
+    let size = picture.size() as usize;
+    let texel = |pixel: usize, start: i64| {
+        let pixel = usize::try_from(pixel as i64 - start).ok()?;
         // The one that the centre of the pixel lies in.
-        u32::try_from((2 * pixel + 1) * size / (2 * extent)).ok()
+        let texel = (2 * pixel + 1) * size / (2 * extent);
+        (pixel < extent).then_some(texel as u32)
     };
     let byte = |x, y| {
         let (column, row) = (texel(x, left)?, texel(height - 1 - y, bottom)?);

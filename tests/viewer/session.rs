@@ -4,19 +4,20 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use firsthit::Stage;
+use firsthit::{Image, Stage};
 use tempfile::TempDir;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat,
-    InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MapState, PropMode, Window,
+    AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConfigureWindowAux,
+    ConnectionExt as _, EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
+    MOTION_NOTIFY_EVENT, MapState, PropMode, Window,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
 use super::DEADLINE;
-use super::pixels::{Pixels, keep, letterboxed, traced};
+use super::pixels::{Pixels, keep, letterboxed, placed, traced};
 use super::program::{Program, wait_for};
 use super::xvfb::Xvfb;
 
@@ -26,6 +27,10 @@ pub const ESCAPE: u32 = 0xff1b;
 pub const HOME: u32 = 0xff50;
 pub const LEFT: u32 = 0xff51;
 pub const RIGHT: u32 = 0xff53;
+
+pub const LEFT_BUTTON: u8 = 1;
+pub const WHEEL_UP: u8 = 4;
+pub const WHEEL_DOWN: u8 = 5;
 
 /// The viewer with its window on a display of its own.
 pub struct Session {
@@ -187,6 +192,42 @@ impl Session {
         }
     }
 
+    /// Moves the pointer to the pixel of the window at `x` and `y`, counted from its top left corner.
+    pub fn point(&self, x: i16, y: i16) {
+        let place = self
+            .connection
+            .translate_coordinates(self.window, self.root, x, y);
+        let place = place.unwrap().reply().unwrap();
+        self.connection
+            .xtest_fake_input(
+                MOTION_NOTIFY_EVENT,
+                0,
+                x11rb::CURRENT_TIME,
+                self.root,
+                place.dst_x,
+                place.dst_y,
+                0,
+            )
+            .unwrap()
+            .check()
+            .unwrap();
+    }
+
+    /// Presses a button of the mouse, or lets go of it. 4 is the wheel turned away from the person, 5 toward the person.
+    pub fn button(&self, button: u8, down: bool) {
+        let event = if down {
+            BUTTON_PRESS_EVENT
+        } else {
+            BUTTON_RELEASE_EVENT
+        };
+        self.fake(event, button);
+    }
+
+    pub fn click(&self, button: u8) {
+        self.button(button, true);
+        self.button(button, false);
+    }
+
     /// Gives the window another size.
     pub fn resize(&self, width: u32, height: u32) {
         let size = ConfigureWindowAux::new().width(width).height(height);
@@ -255,19 +296,32 @@ impl Session {
     }
 
     /// Waits until the window shows the picture of N = `size`, `stage` and `alpha`, as it was traced, byte for byte.
+    #[track_caller]
     pub fn shows(&self, size: u32, stage: Stage, alpha: f64) {
         let picture = traced(size, stage, alpha);
+        self.shows_pixels(|width, height| letterboxed(&picture, width, height));
+    }
+
+    /// The same, with the picture as a square of `extent` pixels whose bottom left corner lies at `corner`.
+    #[track_caller]
+    pub fn shows_placed(&self, picture: &Image, corner: [i64; 2], extent: usize) {
+        self.shows_pixels(|width, height| placed(picture, width, height, corner, extent));
+    }
+
+    /// Waits until the window shows what a window of its width and height should.
+    #[track_caller]
+    fn shows_pixels(&self, expected: impl Fn(usize, usize) -> Pixels) {
         let start = Instant::now();
         loop {
             let (width, height) = self.size();
-            let expected = letterboxed(&picture, width, height);
+            let expected = expected(width, height);
             let shown = self.pixels();
             if shown.as_ref() == Some(&expected) {
                 return;
             }
             if start.elapsed() > DEADLINE {
                 let kept = shown.map(|shown| keep(&shown, &expected));
-                panic!("stage {stage} at α = {alpha} is not what the window shows: {kept:?}");
+                panic!("this is not what the window shows: {kept:?}");
             }
             thread::sleep(Duration::from_millis(10));
         }

@@ -1,0 +1,128 @@
+//! What the pointer does: drags and turns of the wheel. Places are pixels of the window, counted from its bottom left corner.
+
+use glam::IVec2;
+use winit::event::MouseScrollDelta;
+
+/// A press that moves less than this, in pixels of the window, is a click.
+const CLICK: i32 = 4;
+
+/// So many pixels of a touchpad are as much as a notch of a wheel.
+const NOTCH: f64 = 40.0;
+
+/// What the pointer asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Gesture {
+    /// The picture follows the pointer.
+    Drag { by: IVec2 },
+    /// Notches of the wheel; away from the person is positive, and nearer to the picture.
+    Wheel { steps: i32, at: IVec2 },
+}
+
+/// The pointer over the window.
+#[derive(Debug, Default)]
+pub(super) struct Pointer {
+    /// `None` where it is outside.
+    place: Option<IVec2>,
+    press: Option<Press>,
+    /// Notches that are not a whole one yet.
+    notches: f64,
+}
+
+/// The left button is down.
+#[derive(Debug)]
+struct Press {
+    /// Where it went down.
+    start: IVec2,
+    /// It is no click any more.
+    drags: bool,
+}
+
+impl Pointer {
+    pub(super) fn moved(&mut self, place: IVec2) -> Option<Gesture> {
+        let last = self.place.replace(place);
+        let press = self.press.as_mut()?;
+        if !press.drags {
+            let distance = (place - press.start).abs().max_element();
+            press.drags = distance >= CLICK;
+            return press.drags.then(|| Gesture::Drag {
+                by: place - press.start,
+            });
+        }
+        let by = place - last?;
+        (by != IVec2::ZERO).then_some(Gesture::Drag { by })
+    }
+
+    /// It left the window. While a button is down, it is still told where it is.
+    pub(super) fn left(&mut self) {
+        if self.press.is_none() {
+            self.place = None;
+        }
+    }
+
+    /// The left button went down or up.
+    pub(super) fn pressed(&mut self, down: bool) {
+        self.press = self.place.filter(|_| down).map(|start| Press {
+            start,
+            drags: false,
+        });
+    }
+
+    pub(super) fn wheel(&mut self, delta: MouseScrollDelta) -> Option<Gesture> {
+        let notches = match delta {
+            MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
+            MouseScrollDelta::PixelDelta(pixels) => pixels.y / NOTCH,
+        };
+        self.notches += notches;
+        let steps = self.notches.trunc();
+        self.notches -= steps;
+        let at = self.place?;
+        (steps != 0.0).then_some(Gesture::Wheel {
+            steps: steps as i32,
+            at,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_press_drags_once_it_moves_further_than_a_hand_trembles() {
+        let mut pointer = Pointer::default();
+        assert_eq!(pointer.moved(IVec2::new(10, 10)), None);
+        pointer.pressed(true);
+        assert_eq!(pointer.moved(IVec2::new(13, 8)), None);
+        let by = IVec2::new(5, 2);
+        assert_eq!(
+            pointer.moved(IVec2::new(15, 12)),
+            Some(Gesture::Drag { by })
+        );
+        let by = IVec2::new(-1, 0);
+        assert_eq!(
+            pointer.moved(IVec2::new(14, 12)),
+            Some(Gesture::Drag { by })
+        );
+        pointer.pressed(false);
+        assert_eq!(pointer.moved(IVec2::new(50, 50)), None);
+    }
+
+    #[test]
+    fn parts_of_a_notch_add_up() {
+        let mut pointer = Pointer::default();
+        let at = IVec2::new(3, 4);
+        pointer.moved(at);
+        let lines = |lines| MouseScrollDelta::LineDelta(0.0, lines);
+        assert_eq!(pointer.wheel(lines(0.5)), None);
+        assert_eq!(
+            pointer.wheel(lines(0.5)),
+            Some(Gesture::Wheel { steps: 1, at })
+        );
+        assert_eq!(
+            pointer.wheel(lines(-2.0)),
+            Some(Gesture::Wheel { steps: -2, at })
+        );
+        pointer.left();
+        assert_eq!(pointer.wheel(lines(1.0)), None);
+    }
+}

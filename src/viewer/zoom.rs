@@ -1,0 +1,157 @@
+//! Which part of the picture the window shows.
+
+use glam::{IVec2, UVec2};
+
+use crate::screen::Placement;
+
+/// The largest square that a pixel of the picture becomes, in pixels of the window.
+const MAX_MULTIPLE: u32 = 64;
+
+/// The picture as a whole, or a part of it that was zoomed and dragged to.
+#[derive(Debug, Default)]
+pub(super) struct Zoom {
+    /// `None` where the whole picture is shown.
+    chosen: Option<Placement>,
+}
+
+impl Zoom {
+    /// Where a picture of `size` × `size` pixels lies on a surface.
+    pub(super) fn placement(&self, surface: UVec2, size: u32) -> Placement {
+        self.chosen.unwrap_or_else(|| Placement::fit(surface, size))
+    }
+
+    /// Shows the whole picture.
+    pub(super) fn fit(&mut self) {
+        self.chosen = None;
+    }
+
+    /// Zooms by `steps`, outward where they are negative. The pixel of the picture at `pointer` stays there, as long as the middle of
+    /// the window shows the picture.
+    pub(super) fn by(&mut self, steps: i32, pointer: IVec2, surface: UVec2, size: u32) {
+        let least = Placement::fit(surface, size);
+        if least.extent == 0 {
+            return;
+        }
+        let mut placement = self.placement(surface, size);
+        for _ in 0..steps.unsigned_abs().min(MAX_MULTIPLE) {
+            let extent = if steps > 0 {
+                larger(placement.extent, size).max(least.extent)
+            } else {
+                smaller(placement.extent, size)
+            };
+            if extent <= least.extent && steps < 0 {
+                self.fit();
+                return;
+            }
+            placement = placement.zoomed(pointer, extent, size);
+        }
+        self.chosen = Some(placement.around_the_middle(surface));
+    }
+
+    /// Moves the picture by so many pixels of the window.
+    pub(super) fn drag(&mut self, by: IVec2, surface: UVec2, size: u32) {
+        let mut placement = self.placement(surface, size);
+        placement.origin = placement.origin.saturating_add(by);
+        self.chosen = Some(placement.around_the_middle(surface));
+    }
+
+    /// The surface has a new size: what was in its middle stays there.
+    pub(super) fn resize(&mut self, from: UVec2, to: UVec2) {
+        if let Some(placement) = &mut self.chosen {
+            placement.origin += to.as_ivec2() / 2 - from.as_ivec2() / 2;
+            *placement = placement.around_the_middle(to);
+        }
+    }
+}
+
+/// The next larger side: in whole multiples of `size` once there is one.
+fn larger(extent: u32, size: u32) -> u32 {
+    if extent < size {
+        return extent.saturating_add(extent.div_ceil(4)).min(size);
+    }
+    let multiple = extent / size;
+    let next = (multiple + (multiple / 4).max(1)).min(MAX_MULTIPLE.max(multiple));
+    let next = next.saturating_mul(size);
+    if next <= Placement::max_extent(size) {
+        next
+    } else {
+        extent
+    }
+}
+
+/// The next smaller side.
+fn smaller(extent: u32, size: u32) -> u32 {
+    if extent <= size {
+        return extent - extent.div_ceil(5);
+    }
+    let multiple = extent / size;
+    (multiple - (multiple / 5).max(1)) * size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SURFACE: UVec2 = UVec2::new(640, 500);
+
+    #[test]
+    fn what_is_under_the_pointer_stays_there_however_far() {
+        for size in [40, 500, 1500] {
+            let mut zoom = Zoom::default();
+            let pointer = IVec2::new(300, 222);
+            let pixel = |zoom: &Zoom| zoom.placement(SURFACE, size).pixel_at(pointer, size);
+            for _ in 0..30 {
+                // A pixel of the window may show several of a picture that is larger; from 1:1 on it shows one.
+                let single = zoom.placement(SURFACE, size).extent >= size;
+                let before = pixel(&zoom);
+                zoom.by(1, pointer, SURFACE, size);
+                if single {
+                    assert_eq!(pixel(&zoom), before);
+                }
+            }
+            assert_eq!(zoom.placement(SURFACE, size).extent, MAX_MULTIPLE * size);
+            zoom.by(-100, pointer, SURFACE, size);
+            assert_eq!(zoom.chosen, None, "all the way out is the whole picture");
+        }
+    }
+
+    #[test]
+    fn pixels_become_squares_of_one_size() {
+        let mut zoom = Zoom::default();
+        for _ in 0..40 {
+            zoom.by(1, IVec2::ZERO, SURFACE, 700);
+            let extent = zoom.placement(SURFACE, 700).extent;
+            assert!(extent < 700 || extent % 700 == 0, "{extent}");
+        }
+        let mut zoom = Zoom::default();
+        zoom.by(40, IVec2::ZERO, SURFACE, 16384);
+        let extent = zoom.placement(SURFACE, 16384).extent;
+        assert!(extent > 16384 && extent <= Placement::max_extent(16384));
+    }
+
+    #[test]
+    fn the_middle_of_the_window_never_leaves_the_picture() {
+        let mut zoom = Zoom::default();
+        zoom.by(3, IVec2::ZERO, SURFACE, 500);
+        let middle = SURFACE.as_ivec2() / 2;
+        for by in [
+            IVec2::splat(-100_000),
+            IVec2::new(i32::MAX, 3),
+            IVec2::splat(i32::MIN),
+        ] {
+            zoom.drag(by, SURFACE, 500);
+            let placement = zoom.placement(SURFACE, 500);
+            assert!(placement.pixel_at(middle, 500).is_some(), "{placement:?}");
+        }
+        zoom.resize(SURFACE, UVec2::new(31, 1000));
+        let placement = zoom.placement(UVec2::new(31, 1000), 500);
+        assert!(placement.pixel_at(IVec2::new(15, 500), 500).is_some());
+    }
+
+    #[test]
+    fn a_window_without_room_is_not_zoomed() {
+        let mut zoom = Zoom::default();
+        zoom.by(5, IVec2::ZERO, UVec2::new(640, 0), 500);
+        assert_eq!(zoom.chosen, None);
+    }
+}
