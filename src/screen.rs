@@ -185,6 +185,12 @@ impl Screen {
             gl.draw_arrays(glow::TRIANGLE_STRIP, 0, 4);
         }
     }
+
+    /// Waits until the driver has done all that it was asked to.
+    pub(crate) fn finish(&self) {
+        // SAFETY: the context is current.
+        unsafe { self.gl.finish() };
+    }
 }
 
 impl Drop for Screen {

@@ -8,10 +8,14 @@ mod action;
 mod app;
 mod error;
 mod frames;
+mod information;
+mod menu;
+mod overlay;
 mod playback;
 mod pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
+mod sheet;
 mod snapshot;
 mod tracing;
 mod window;
@@ -50,7 +54,7 @@ pub struct Options {
     pub exit_after_frames: Option<u64>,
 }
 
-/// Something that a person at the terminal may want to know, as one line of text by [`fmt::Display`].
+/// Something that a person at the terminal may want to know, as a line of text, or some, by [`fmt::Display`].
 #[derive(Debug)]
 pub enum Event {
     /// The first frame is on its way to the display.
@@ -64,6 +68,8 @@ pub enum Event {
     Saved(PathBuf),
     /// The shown picture could not be saved.
     NotSaved(SaveError),
+    /// A pixel that was clicked on, worked through: lines of text.
+    Inspected(String),
     /// The window is closed.
     Left(Counts),
 }
@@ -80,6 +86,7 @@ impl fmt::Display for Event {
             }
             Event::Saved(path) => write!(f, "saved {}", path.display()),
             Event::NotSaved(error) => write!(f, "not saved: {error}"),
+            Event::Inspected(text) => f.write_str(text.trim_end()),
             Event::Left(counts) => counts.fmt(f),
         }
     }

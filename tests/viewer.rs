@@ -26,11 +26,14 @@ use std::fs;
 use std::thread;
 use std::time::Duration;
 
-use firsthit::Stage;
 use firsthit::camera::{ROUND, frame_angle};
+use firsthit::{Kernel, Scene, Stage, Tracer};
 use pixels::traced;
 use program::{Program, wait_for};
-use session::{ESCAPE, HOME, LEFT, LEFT_BUTTON, RIGHT, SPACE, Session, WHEEL_DOWN, WHEEL_UP};
+use session::{
+    DOWN, ENTER, ESCAPE, F1, HOME, LEFT, LEFT_BUTTON, RIGHT, RIGHT_BUTTON, SPACE, Session, UP,
+    WHEEL_DOWN, WHEEL_UP,
+};
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{ConnectionExt as _, CreateWindowAux, Window, WindowClass};
 use xvfb::Xvfb;
@@ -523,6 +526,118 @@ fn the_wheel_zooms_around_the_pointer_and_dragging_moves() {
     session.type_keys("q");
     let [traces, uploads, _] = session.program.left();
     assert_eq!([traces, uploads], [1, 1]);
+}
+
+#[test]
+fn the_menu_is_for_keys_and_mouse_and_esc_closes_it_first() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
+        return;
+    };
+    let six = Stage::Reflection;
+    session.shows(500, six, 0.0);
+    session.type_keys("m");
+    session.covers(500, six, 0.0, "viewer-menu.png");
+    session.press(ESCAPE);
+    session.shows(500, six, 0.0);
+    // Five down: the fifth stage. Twice up from the top: around to the last but one.
+    session.type_keys("m");
+    for _ in 0..5 {
+        session.press(DOWN);
+    }
+    session.press(ENTER);
+    session.shows(500, Stage::Shadow, 0.0);
+    session.type_keys("m");
+    session.press(UP);
+    session.press(UP);
+    session.press(ENTER);
+    session.covers(500, Stage::Shadow, 0.0, "viewer-help.png");
+    session.press(ESCAPE);
+    session.shows(500, Stage::Shadow, 0.0);
+    // The first row lies just below the pointer.
+    session.point(20, 20);
+    session.click(RIGHT_BUTTON);
+    session.covers(500, Stage::Shadow, 0.0, "viewer-menu-by-mouse.png");
+    session.point(60, 34);
+    session.click(LEFT_BUTTON);
+    session.shows(500, Stage::Image, 0.0);
+    // A click beside it takes nothing; a key does what it always does.
+    session.click(RIGHT_BUTTON);
+    session.covers(500, Stage::Image, 0.0, "viewer-menu-by-mouse.png");
+    session.point(490, 490);
+    session.click(LEFT_BUTTON);
+    session.shows(500, Stage::Image, 0.0);
+    session.press(F1);
+    session.covers(500, Stage::Image, 0.0, "viewer-help.png");
+    session.type_keys("h6");
+    session.shows(500, six, 0.0);
+    session.press(ESCAPE);
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!(
+        [traces, uploads],
+        [4, 4],
+        "what lies over a picture changes none"
+    );
+}
+
+#[test]
+fn information_and_the_pixel_under_the_pointer_come_and_go() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
+        return;
+    };
+    session.type_keys("i");
+    session.point(255, 297);
+    session.covers(500, Stage::Reflection, 0.0, "viewer-information.png");
+    sleeps(&session);
+    session.type_keys("i");
+    session.shows(500, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1]);
+}
+
+#[test]
+fn a_click_works_the_pixel_through_as_explain_does() {
+    let Some(session) = Session::start(&["view", "--stage", "6"]) else {
+        return;
+    };
+    session.shows(500, Stage::Reflection, 0.0);
+    session.point(255, 499 - 202);
+    session.click(LEFT_BUTTON);
+    let tracer = Tracer::new(Kernel::default(), 1).unwrap();
+    let text = tracer.explain(&Scene::builtin(), Stage::Reflection, 0.0, 500, (255, 202));
+    for line in text.unwrap().lines() {
+        assert_eq!(session.program.line(line), line);
+    }
+    session.covers(500, Stage::Reflection, 0.0, "viewer-inspected.png");
+    session.press(ESCAPE);
+    session.shows(500, Stage::Reflection, 0.0);
+}
+
+#[test]
+fn what_was_saved_is_said_in_the_window_for_a_while() {
+    let Some(session) = Session::start(&["view", "--stage", "6"]) else {
+        return;
+    };
+    session.shows(500, Stage::Reflection, 0.0);
+    session.type_keys("s");
+    session.covers(500, Stage::Reflection, 0.0, "viewer-saved.png");
+    session.shows(500, Stage::Reflection, 0.0);
+    sleeps(&session);
+}
+
+#[test]
+fn k_goes_through_the_kernels() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
+        return;
+    };
+    let kernels = ["fast", "double", "listing", "reference", "exact"];
+    for kernel in kernels {
+        session.type_keys("k");
+        session.titled(&[&format!("— {kernel} —")]);
+    }
+    session.shows(40, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    session.program.left();
 }
 
 /// The program, on a display that cannot be had, says so in one line and ends with status 1.

@@ -78,7 +78,7 @@ pub enum ScreenError {
 
 impl ScreenError {
     /// `what` was refused, with the driver's words in one line however many they came in.
-    pub(super) fn refused(what: &'static str, reason: &str) -> ScreenError {
+    pub(crate) fn refused(what: &'static str, reason: &str) -> ScreenError {
         ScreenError::Refused {
             what,
             reason: reason.split_whitespace().collect::<Vec<_>>().join(" "),

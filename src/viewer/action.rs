@@ -18,8 +18,12 @@ pub(super) enum Action {
     Zero,
     SavePng,
     SaveExr,
+    NextKernel,
+    Information,
     Fit,
     FullScreen,
+    Menu,
+    Help,
     Leave,
 }
 
@@ -144,6 +148,20 @@ const BINDINGS: &[Binding] = &[
         ..Binding::new("Shift+S", "save the traced picture as an EXR", A::SaveExr)
     },
     Binding {
+        characters: &['k'],
+        places: &[C::KeyK],
+        ..Binding::new("K", "the next kernel", A::NextKernel)
+    },
+    Binding {
+        characters: &['i'],
+        places: &[C::KeyI],
+        ..Binding::new(
+            "I",
+            "information, and the pixel under the pointer",
+            A::Information,
+        )
+    },
+    Binding {
         characters: &['z'],
         places: &[C::KeyZ],
         ..Binding::new("Z", "the whole picture again, after wheel and drag", A::Fit)
@@ -154,12 +172,45 @@ const BINDINGS: &[Binding] = &[
         ..Binding::new("F", "full screen, and back", A::FullScreen)
     },
     Binding {
+        characters: &['m'],
+        places: &[C::KeyM],
+        ..Binding::new("M", "the menu, also on the right button", A::Menu)
+    },
+    Binding {
+        characters: &['h'],
+        named: &[N::F1],
+        places: &[C::KeyH],
+        ..Binding::new("H, F1", "the keys", A::Help)
+    },
+    Binding {
         characters: &['q'],
         named: &[N::Escape],
         places: &[C::KeyQ],
-        ..Binding::new("Q, Esc", "leave", A::Leave)
+        ..Binding::new("Q, Esc", "leave; Esc first closes what is open", A::Leave)
     },
 ];
+
+/// A row of the menu.
+pub(super) struct Row {
+    pub(super) keys: &'static str,
+    pub(super) does: &'static str,
+    pub(super) action: Action,
+    /// Rows of another kind come before it.
+    pub(super) opens_group: bool,
+}
+
+/// Every action, as the menu shows it.
+pub(super) fn rows() -> impl Iterator<Item = Row> {
+    BINDINGS.iter().map(|binding| Row {
+        keys: binding.keys,
+        does: binding.does,
+        action: binding.action,
+        opens_group: matches!(
+            binding.action,
+            A::Pause | A::SavePng | A::NextKernel | A::Fit | A::Menu | A::Leave
+        ),
+    })
+}
 
 /// The keys of the viewer and what they do, one a line.
 ///

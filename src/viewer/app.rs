@@ -2,10 +2,12 @@
 
 use std::time::{Duration, Instant};
 
+use egui::Pos2;
+use glam::IVec2;
 use winit::application::ApplicationHandler;
-use winit::event::{KeyEvent, MouseButton, StartCause, WindowEvent};
+use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::keyboard::ModifiersState;
+use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::WindowId;
 
 use crate::image::Format;
@@ -13,10 +15,13 @@ use crate::{Kernel, Stage};
 
 use super::action::{Action, Press};
 use super::frames::Meter;
+use super::information::{Times, information, name_pixel};
+use super::menu::Menu;
 use super::playback::Playback;
 use super::pointer::{Gesture, Pointer};
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
+use super::sheet::{Facts, Sheet};
 use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
@@ -64,6 +69,8 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         frame_time: Duration::ZERO,
         meter: Meter::default(),
         title: String::new(),
+        sheet: Sheet::default(),
+        times: Times::default(),
         counts: Counts::default(),
         failure: None,
     };
@@ -103,6 +110,8 @@ struct App<'a> {
     frame_time: Duration,
     meter: Meter,
     title: String,
+    sheet: Sheet,
+    times: Times,
     counts: Counts,
     failure: Option<ViewerError>,
 }
@@ -178,6 +187,8 @@ impl App<'_> {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
+        let message = self.sheet.expire(start);
+        let facts = self.facts();
         let Some(view) = &mut self.view else {
             return Ok(());
         };
@@ -191,11 +202,18 @@ impl App<'_> {
         };
         let image = (!self.uploaded).then_some(&*shown.image);
         self.counts.uploads += u64::from(image.is_some());
-        self.uploaded = view.draw(image)?;
-        if !self.uploaded {
+        let waits = self.sheet.information;
+        let drawn = view.draw(image, (&mut self.sheet, &facts), waits)?;
+        self.uploaded = drawn.is_some();
+        let Some(cost) = drawn else {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());
-        }
+        };
+        self.times = Times {
+            upload: cost.upload.unwrap_or(self.times.upload),
+            draw: cost.draw,
+            display: self.meter.rate(),
+        };
         self.counts.draws += 1;
         if self.counts.draws == 1 {
             (self.report)(Event::FirstFrame {
@@ -207,8 +225,48 @@ impl App<'_> {
             self.look_around();
         }
         self.next_frame = start + self.frame_time;
+        if let Some(end) = message {
+            event_loop.set_control_flow(ControlFlow::WaitUntil(end));
+        }
         self.schedule(event_loop);
         Ok(())
+    }
+
+    /// What the sheet says about the picture.
+    fn facts(&self) -> Facts {
+        let (Some(view), Some(shown)) = (&self.view, &self.shown) else {
+            return Facts::default();
+        };
+        let mut facts = Facts {
+            kernel: self.kernel.name(),
+            ..Facts::default()
+        };
+        if self.sheet.information {
+            facts.information = information(shown, self.times);
+        }
+        if self.sheet.names_pixels() {
+            facts.pixel = self
+                .pointer
+                .place()
+                .and_then(|place| view.picture_pixel(place))
+                .map(|pixel| name_pixel(&shown.image, pixel))
+                .unwrap_or_default();
+        }
+        if let Some((pixel, _)) = &self.sheet.inspected {
+            facts.inspected = Some(view.square_in_points(*pixel));
+        }
+        facts.on.push(Action::Stage(self.stage));
+        for (on, action) in [
+            (
+                self.stage == Stage::Animation && self.playback.paused(),
+                Action::Pause,
+            ),
+            (self.sheet.information, Action::Information),
+            (self.sheet.help, Action::Help),
+        ] {
+            facts.on.extend(on.then_some(action));
+        }
+        facts
     }
 
     /// Whether a frame that is drawn now is the last one.
@@ -273,7 +331,25 @@ impl App<'_> {
                     }
                 }
                 Reply::Saved(saved) => {
-                    (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
+                    let event = saved.map_or_else(Event::NotSaved, Event::Saved);
+                    self.sheet.say(event.to_string());
+                    (self.report)(event);
+                    self.touch();
+                }
+                Reply::Explained(pixel, text) => {
+                    self.sheet.inspected = Some((pixel, text.clone()));
+                    (self.report)(Event::Inspected(text));
+                    self.touch();
+                }
+                Reply::Refused(_, error) if self.shown.is_none() => return Err(error.into()),
+                Reply::Refused(frame, error) => {
+                    self.sheet.say(error.to_string());
+                    if self.kernel == frame.kernel {
+                        self.next_kernel();
+                        self.retitle();
+                        self.tracing.wish(self.wanted());
+                    }
+                    self.touch();
                 }
                 Reply::Failed(error) => return Err(error),
             }
@@ -306,6 +382,19 @@ impl App<'_> {
             Action::Zero => self.playback.zero(),
             Action::SavePng => self.save(Format::Png),
             Action::SaveExr => self.save(Format::Exr),
+            Action::NextKernel => self.next_kernel(),
+            Action::Information => {
+                self.sheet.information = !self.sheet.information;
+                self.touch();
+            }
+            Action::Menu => {
+                let place = self.pointer.place();
+                self.toggle_menu(place);
+            }
+            Action::Help => {
+                self.sheet.help = !self.sheet.help;
+                self.touch();
+            }
             Action::Fit => {
                 if let Some(view) = &mut self.view {
                     view.fit();
@@ -337,13 +426,96 @@ impl App<'_> {
     }
 
     /// What the pointer asks for.
-    fn point(&mut self, gesture: Gesture) {
+    fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
+        if self.sheet.menu.is_some() {
+            self.point_at_menu(event_loop, gesture);
+            return;
+        }
         let Some(view) = &mut self.view else {
             return;
         };
         match gesture {
             Gesture::Drag { by } => view.drag(by),
             Gesture::Wheel { steps, at } => view.zoom(steps, at),
+            Gesture::Hover if self.sheet.names_pixels() => {}
+            Gesture::Hover => return,
+            Gesture::Click { at } => {
+                if let (Some(pixel), Some(shown)) = (view.picture_pixel(at), &self.shown) {
+                    self.tracing.explain(shown.frame, pixel);
+                }
+                return;
+            }
+        }
+        self.touch();
+    }
+
+    fn next_kernel(&mut self) {
+        let kernels = Kernel::ALL.iter().cycle();
+        let next = kernels.skip_while(|&&kernel| kernel != self.kernel).nth(1);
+        self.kernel = next.copied().unwrap_or_default();
+    }
+
+    /// Opens the menu at a pixel of the window, or at the corner, or closes it.
+    fn toggle_menu(&mut self, place: Option<IVec2>) {
+        if self.sheet.menu.take().is_none()
+            && let Some(view) = &self.view
+        {
+            let place = place.map_or(Pos2::ZERO, |place| view.in_points(place));
+            self.sheet.menu = Some(Menu::open(place));
+        }
+        self.touch();
+    }
+
+    /// What a key does while the menu is open, if it is one of the menu's own.
+    fn menu_key(&mut self, event_loop: &ActiveEventLoop, key: &Key) -> bool {
+        let Some(menu) = &mut self.sheet.menu else {
+            return false;
+        };
+        match key {
+            Key::Named(NamedKey::ArrowDown) => menu.step(1),
+            Key::Named(NamedKey::ArrowUp) => menu.step(-1),
+            Key::Named(NamedKey::Enter) => {
+                let chosen = menu.chosen();
+                self.sheet.menu = None;
+                if let Some(action) = chosen {
+                    self.choose(event_loop, action);
+                }
+            }
+            _ => return false,
+        }
+        self.touch();
+        true
+    }
+
+    /// Does what a row of the menu says.
+    fn choose(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        // The menu has just been closed.
+        if action != Action::Menu {
+            self.act(event_loop, action);
+        }
+    }
+
+    /// What the pointer asks for while the menu is open.
+    fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
+        let (Some(view), Some(menu)) = (&self.view, &mut self.sheet.menu) else {
+            return;
+        };
+        match gesture {
+            Gesture::Hover => {
+                let under = self.pointer.place().map(|place| view.in_points(place));
+                if !under.is_some_and(|place| menu.hover(place)) {
+                    return;
+                }
+            }
+            Gesture::Wheel { steps, .. } => menu.step(-steps as isize),
+            Gesture::Drag { .. } => return,
+            Gesture::Click { at } => {
+                let action = menu.click(view.in_points(at));
+                self.sheet.menu = None;
+                if let Some(action) = action {
+                    self.choose(event_loop, action);
+                }
+            }
         }
         self.touch();
     }
@@ -454,7 +626,10 @@ impl ApplicationHandler for App<'_> {
                 is_synthetic: false,
                 ..
             } if event.state.is_pressed() => {
-                if let Some(action) = self.pressed(&event) {
+                if self.menu_key(event_loop, &event.logical_key) {
+                } else if event.logical_key == Key::Named(NamedKey::Escape) && self.sheet.close() {
+                    self.touch();
+                } else if let Some(action) = self.pressed(&event) {
                     self.act(event_loop, action);
                 }
             }
@@ -462,7 +637,7 @@ impl ApplicationHandler for App<'_> {
                 if let Some(view) = &self.view
                     && let Some(gesture) = self.pointer.moved(view.window_pixel(position))
                 {
-                    self.point(gesture);
+                    self.point(event_loop, gesture);
                 }
             }
             WindowEvent::CursorLeft { .. } => self.pointer.left(),
@@ -470,10 +645,19 @@ impl ApplicationHandler for App<'_> {
                 state,
                 button: MouseButton::Left,
                 ..
-            } => self.pointer.pressed(state.is_pressed()),
+            } => {
+                if let Some(gesture) = self.pointer.pressed(state.is_pressed()) {
+                    self.point(event_loop, gesture);
+                }
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Pressed,
+                button: MouseButton::Right,
+                ..
+            } => self.toggle_menu(self.pointer.place()),
             WindowEvent::MouseWheel { delta, .. } => {
                 if let Some(gesture) = self.pointer.wheel(delta) {
-                    self.point(gesture);
+                    self.point(event_loop, gesture);
                 }
             }
             WindowEvent::Resized(size) => {

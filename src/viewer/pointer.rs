@@ -16,6 +16,10 @@ pub(super) enum Gesture {
     Drag { by: IVec2 },
     /// Notches of the wheel; away from the person is positive, and nearer to the picture.
     Wheel { steps: i32, at: IVec2 },
+    /// It went to another place, and nothing was pressed.
+    Hover,
+    /// The left button was pressed and let go without moving.
+    Click { at: IVec2 },
 }
 
 /// The pointer over the window.
@@ -40,7 +44,9 @@ struct Press {
 impl Pointer {
     pub(super) fn moved(&mut self, place: IVec2) -> Option<Gesture> {
         let last = self.place.replace(place);
-        let press = self.press.as_mut()?;
+        let Some(press) = &mut self.press else {
+            return Some(Gesture::Hover);
+        };
         if !press.drags {
             let distance = (place - press.start).abs().max_element();
             press.drags = distance >= CLICK;
@@ -59,12 +65,21 @@ impl Pointer {
         }
     }
 
+    /// Where it is; `None` where it is outside.
+    pub(super) fn place(&self) -> Option<IVec2> {
+        self.place
+    }
+
     /// The left button went down or up.
-    pub(super) fn pressed(&mut self, down: bool) {
-        self.press = self.place.filter(|_| down).map(|start| Press {
+    pub(super) fn pressed(&mut self, down: bool) -> Option<Gesture> {
+        let press = self.place.filter(|_| down).map(|start| Press {
             start,
             drags: false,
         });
+        let before = std::mem::replace(&mut self.press, press);
+        let still = before.is_some_and(|before| !before.drags);
+        let at = self.place.filter(|_| still && !down)?;
+        Some(Gesture::Click { at })
     }
 
     pub(super) fn wheel(&mut self, delta: MouseScrollDelta) -> Option<Gesture> {
@@ -90,8 +105,8 @@ mod tests {
     #[test]
     fn a_press_drags_once_it_moves_further_than_a_hand_trembles() {
         let mut pointer = Pointer::default();
-        assert_eq!(pointer.moved(IVec2::new(10, 10)), None);
-        pointer.pressed(true);
+        assert_eq!(pointer.moved(IVec2::new(10, 10)), Some(Gesture::Hover));
+        assert_eq!(pointer.pressed(true), None);
         assert_eq!(pointer.moved(IVec2::new(13, 8)), None);
         let by = IVec2::new(5, 2);
         assert_eq!(
@@ -103,8 +118,12 @@ mod tests {
             pointer.moved(IVec2::new(14, 12)),
             Some(Gesture::Drag { by })
         );
-        pointer.pressed(false);
-        assert_eq!(pointer.moved(IVec2::new(50, 50)), None);
+        assert_eq!(pointer.pressed(false), None);
+        let at = IVec2::new(50, 50);
+        assert_eq!(pointer.moved(at), Some(Gesture::Hover));
+        assert_eq!(pointer.pressed(true), None);
+        assert_eq!(pointer.moved(at + 2), None);
+        assert_eq!(pointer.pressed(false), Some(Gesture::Click { at: at + 2 }));
     }
 
     #[test]

@@ -2,8 +2,12 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
 
 use crate::image::{Format, SaveError};
+use crate::tracer::{InDoubt, TraceError};
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
 use super::snapshot;
@@ -23,12 +27,16 @@ pub(super) struct Frame {
 pub(super) struct Traced {
     pub(super) frame: Frame,
     pub(super) image: Arc<Image>,
+    /// How long tracing it took.
+    pub(super) time: Duration,
+    pub(super) in_doubt: InDoubt,
 }
 
 /// What the thread is asked for.
 enum Task {
     Trace(Frame),
     Save(Frame, Format),
+    Explain(Frame, UVec2),
 }
 
 /// What it answers.
@@ -37,6 +45,10 @@ pub(super) enum Reply {
     Traced(Traced),
     /// What became of a picture that was to be saved.
     Saved(Result<PathBuf, SaveError>),
+    /// A pixel, worked through.
+    Explained(UVec2, String),
+    /// The kernel does not trace such a scene.
+    Refused(Frame, TraceError),
     /// Something is wanting that no other picture needs less of.
     Failed(ViewerError),
 }
@@ -73,11 +85,10 @@ impl Studio {
         if let Some(last) = self.last.as_ref().filter(|last| last.frame == frame) {
             return Ok(last.clone());
         }
-        if self.tracer.kernel() != frame.kernel {
-            self.tracer = Tracer::new(frame.kernel, self.threads)?;
-        }
         self.last = None;
+        self.choose(frame.kernel)?;
         let mut image = self.free_picture()?;
+        let start = Instant::now();
         if let Some(image) = Arc::get_mut(&mut image) {
             self.tracer
                 .trace(&self.scene, frame.stage, frame.alpha, image)?;
@@ -85,11 +96,28 @@ impl Studio {
         let traced = Traced {
             frame,
             image: image.clone(),
+            time: start.elapsed(),
+            in_doubt: self.tracer.in_doubt(),
         };
         self.traces += 1;
         self.pictures.push(image);
         self.last = Some(traced.clone());
         Ok(traced)
+    }
+
+    fn explain(&mut self, frame: Frame, pixel: UVec2) -> Result<String, ViewerError> {
+        self.choose(frame.kernel)?;
+        let Frame { stage, alpha, .. } = frame;
+        Ok(self
+            .tracer
+            .explain(&self.scene, stage, alpha, self.size, pixel.into())?)
+    }
+
+    fn choose(&mut self, kernel: Kernel) -> Result<(), ViewerError> {
+        if self.tracer.kernel() != kernel {
+            self.tracer = Tracer::new(kernel, self.threads)?;
+        }
+        Ok(())
     }
 
     /// A picture that nobody looks at, taken from the others.
@@ -124,16 +152,22 @@ impl Tracing {
         wake: impl Fn() + Send + 'static,
     ) -> Result<Tracing, ViewerError> {
         let worker = Worker::start("tracing", wake, move |task, reply| {
+            let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, _)) = task;
             let answer = match task {
-                Task::Trace(frame) => match studio.trace(frame) {
-                    Ok(traced) => Reply::Traced(traced),
-                    Err(error) => Reply::Failed(error),
-                },
-                Task::Save(frame, format) => match studio.trace(frame) {
-                    Ok(traced) => Reply::Saved(snapshot::save(&traced.image, frame.stage, format)),
-                    Err(error) => Reply::Failed(error),
-                },
+                Task::Trace(_) => studio.trace(frame).map(Reply::Traced),
+                Task::Save(_, format) => studio
+                    .trace(frame)
+                    .map(|traced| Reply::Saved(snapshot::save(&traced.image, frame.stage, format))),
+                Task::Explain(_, pixel) => studio
+                    .explain(frame, pixel)
+                    .map(|text| Reply::Explained(pixel, text)),
             };
+            let answer = answer.unwrap_or_else(|error| match error {
+                ViewerError::Trace(error @ TraceError::Listing { .. }) => {
+                    Reply::Refused(frame, error)
+                }
+                error => Reply::Failed(error),
+            });
             reply((studio.traces, answer));
         })
         .map_err(ViewerError::Thread)?;
@@ -160,6 +194,11 @@ impl Tracing {
     /// Has the picture of `frame` saved.
     pub(super) fn save(&self, frame: Frame, format: Format) {
         self.worker.send(Task::Save(frame, format));
+    }
+
+    /// Has a pixel of `frame`, column and row, worked through.
+    pub(super) fn explain(&self, frame: Frame, pixel: UVec2) {
+        self.worker.send(Task::Explain(frame, pixel));
     }
 
     pub(super) fn reply(&mut self) -> Option<Reply> {

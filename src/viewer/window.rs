@@ -2,8 +2,9 @@
 
 use std::num::NonZeroU32;
 use std::rc::Rc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use egui::{Pos2, Rect};
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 use glutin::config::{ColorBufferType, Config, ConfigTemplateBuilder};
@@ -23,6 +24,8 @@ use crate::screen::{Placement, Screen};
 
 use super::ViewerError;
 use super::error::reason;
+use super::overlay::Overlay;
+use super::sheet::{Facts, Sheet};
 use super::zoom::Zoom;
 
 /// The window and everything that draws in it.
@@ -40,6 +43,8 @@ pub(super) struct View {
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
 struct Drawing {
+    /// Made when there is something to write over the picture.
+    overlay: Option<Overlay>,
     screen: Screen,
     renderer: String,
     surface: Surface<WindowSurface>,
@@ -194,28 +199,61 @@ impl View {
         self.window.set_fullscreen(wanted);
     }
 
-    /// Draws the picture, uploading `image` first where it changed. Whether it is on the way to the display: `false` says that the
-    /// surface was lost and everything on it made anew, so that `image` must be drawn again.
-    pub(super) fn draw(&mut self, image: Option<&Image>) -> Result<bool, ViewerError> {
+    /// Draws the picture, uploading `image` first where it changed, and `sheet` over it. What it took, once it is on the way to the
+    /// display; `None` says that the surface was lost and everything on it made anew, so that `image` must be drawn again.
+    ///
+    /// Where `waits`, each step is waited for, so that the times are those of the steps.
+    pub(super) fn draw(
+        &mut self,
+        image: Option<&Image>,
+        (sheet, facts): (&mut Sheet, &Facts),
+        waits: bool,
+    ) -> Result<Option<Cost>, ViewerError> {
+        let (placement, surface) = (self.placement(), self.surface);
+        let scale = self.scale();
         let Some(drawing) = &mut self.drawing else {
             return Err(ViewerError::Lost);
         };
+        let start = Instant::now();
         if let Some(image) = image {
             drawing.screen.upload(image)?;
+            if waits {
+                drawing.screen.finish();
+            }
         }
-        self.present(self.placement())
+        let uploaded = Instant::now();
+        drawing.screen.draw(surface, placement);
+        if !sheet.is_empty() {
+            let overlay = match drawing.overlay.take() {
+                Some(overlay) => overlay,
+                None => Overlay::new(functions(&self.config.display()))?,
+            };
+            let overlay = drawing.overlay.insert(overlay);
+            overlay.draw(surface, scale, |context| sheet.lay_out(context, facts));
+        }
+        if waits {
+            drawing.screen.finish();
+        }
+        let drawn = Instant::now();
+        let cost = Cost {
+            upload: image.map(|_| uploaded - start),
+            draw: drawn - uploaded,
+        };
+        Ok(self.present()?.then_some(cost))
     }
 
     /// Draws a window without a picture.
-    pub(super) fn clear(&mut self) -> Result<bool, ViewerError> {
-        self.present(Placement::NOWHERE)
+    pub(super) fn clear(&mut self) -> Result<(), ViewerError> {
+        if let Some(drawing) = &self.drawing {
+            drawing.screen.draw(self.surface, Placement::NOWHERE);
+        }
+        self.present().map(drop)
     }
 
-    fn present(&mut self, placement: Placement) -> Result<bool, ViewerError> {
+    fn present(&mut self) -> Result<bool, ViewerError> {
         let Some(drawing) = &mut self.drawing else {
             return Err(ViewerError::Lost);
         };
-        drawing.screen.draw(self.surface, placement);
         self.window.pre_present_notify();
         if drawing.surface.swap_buffers(&drawing.context).is_ok() {
             return Ok(true);
@@ -226,6 +264,40 @@ impl View {
             Err(Failure::Viewer(error)) => Err(error),
         }
     }
+
+    /// Pixels to a point.
+    fn scale(&self) -> f32 {
+        self.window.scale_factor() as f32
+    }
+
+    /// The pixel of the picture, column and row, that the pixel `window` of the window shows.
+    pub(super) fn picture_pixel(&self, window: IVec2) -> Option<UVec2> {
+        self.placement().pixel_at(window, self.picture)
+    }
+
+    /// The place of the middle of the pixel `window`, in points from the top left corner.
+    pub(super) fn in_points(&self, window: IVec2) -> Pos2 {
+        let top = self.surface.y as i32 - 1 - window.y;
+        Pos2::new(window.x as f32 + 0.5, top as f32 + 0.5) / self.scale()
+    }
+
+    /// The square that shows a pixel of the picture, in points from the top left corner.
+    pub(super) fn square_in_points(&self, pixel: UVec2) -> Rect {
+        let [first, end] = self.placement().square_of(pixel, self.picture);
+        let height = self.surface.y as i32;
+        Rect::from_min_max(
+            Pos2::new(first.x as f32, (height - end.y) as f32) / self.scale(),
+            Pos2::new(end.x as f32, (height - first.y) as f32) / self.scale(),
+        )
+    }
+}
+
+/// What it took to draw a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cost {
+    /// `None` where there was nothing to upload.
+    pub(super) upload: Option<Duration>,
+    pub(super) draw: Duration,
 }
 
 impl Drawing {
@@ -260,14 +332,12 @@ impl Drawing {
             _ => SwapInterval::Wait(NonZeroU32::MIN),
         };
         let _ = surface.set_swap_interval(&context, interval);
-        // SAFETY: the context is current, and the functions come from its own display.
-        let gl = unsafe {
-            glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name))
-        };
+        let gl = functions(&display);
         // SAFETY: the context is current; every context has these two names.
         let renderer = unsafe { gl.get_parameter_string(glow::RENDERER) };
         let screen = Screen::new(Rc::new(gl), picture).map_err(ViewerError::from)?;
         Ok(Drawing {
+            overlay: None,
             screen,
             renderer,
             surface,
@@ -281,6 +351,12 @@ impl Drop for Drawing {
         // Freeing the screen needs its context. Where it is lost, there is nothing left to free.
         let _ = self.context.make_current(&self.surface);
     }
+}
+
+/// The functions of OpenGL in the context that is current, one of `display`.
+fn functions(display: &Display) -> glow::Context {
+    // SAFETY: the context is current, and the functions come from its own display.
+    unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) }
 }
 
 /// Opens OpenGL on the display of `event_loop`; on Windows through `window`.

@@ -28,7 +28,13 @@ pub const HOME: u32 = 0xff50;
 pub const LEFT: u32 = 0xff51;
 pub const RIGHT: u32 = 0xff53;
 
+pub const DOWN: u32 = 0xff54;
+pub const UP: u32 = 0xff52;
+pub const ENTER: u32 = 0xff0d;
+pub const F1: u32 = 0xffbe;
+
 pub const LEFT_BUTTON: u8 = 1;
+pub const RIGHT_BUTTON: u8 = 3;
 pub const WHEEL_UP: u8 = 4;
 pub const WHEEL_DOWN: u8 = 5;
 
@@ -325,6 +331,18 @@ impl Session {
             }
             thread::sleep(Duration::from_millis(10));
         }
+    }
+
+    /// Waits until something lies over the picture of N = `size`, `stage` and `alpha`, and keeps it to be looked at.
+    #[track_caller]
+    pub fn covers(&self, size: u32, stage: Stage, alpha: f64, name: &str) {
+        let picture = traced(size, stage, alpha);
+        wait_for(&format!("{name} over the picture"), || {
+            let (width, height) = self.size();
+            let shown = self.pixels()?;
+            (shown != letterboxed(&picture, width, height)).then_some(())
+        });
+        self.screenshot(name);
     }
 
     /// The picture in the window as a PNG in the tests' folder for temporary files, to be looked at.

@@ -1,0 +1,60 @@
+//! The information line: what is shown, and what it costs.
+
+use std::time::Duration;
+
+use crate::Image;
+use crate::image::display_byte;
+
+use super::tracing::Traced;
+use glam::UVec2;
+
+/// What is known about the frame that was drawn last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Times {
+    /// The last upload.
+    pub(super) upload: Duration,
+    pub(super) draw: Duration,
+    /// Frames a second on the display, while something plays.
+    pub(super) display: Option<f64>,
+}
+
+/// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many frames a second could be traced, and how
+/// many are displayed; the pixels in doubt.
+pub(super) fn information(traced: &Traced, times: Times) -> String {
+    let frame = traced.frame;
+    let size = traced.image.size();
+    let ms = |time: Duration| format!("{:.2}", 1e3 * time.as_secs_f64());
+    let rate = 1.0 / traced.time.as_secs_f64().max(1e-9);
+    let display = match times.display {
+        Some(rate) => format!("{rate:.0} fps"),
+        None => "still".to_owned(),
+    };
+    let in_doubt = traced.in_doubt;
+    format!(
+        "{}  {}  α = {:.3}  {size} × {size}\n\
+         ms: trace {}  upload {}  draw {}  total {}\n\
+         tracing {rate:.0} fps  display {display}\n\
+         in doubt: {} after f64, {} after double-doubles",
+        frame.stage,
+        frame.kernel.name(),
+        frame.alpha,
+        ms(traced.time),
+        ms(times.upload),
+        ms(times.draw),
+        ms(traced.time + times.upload + times.draw),
+        in_doubt.double_double + in_doubt.arbitrary,
+        in_doubt.arbitrary,
+    )
+}
+
+/// A pixel by its column and row, its floats and its bytes.
+pub(super) fn name_pixel(image: &Image, pixel: UVec2) -> String {
+    let Some([red, green, blue]) = image.pixel(pixel.x, pixel.y) else {
+        return String::new();
+    };
+    let [r, g, b] = [red, green, blue].map(display_byte);
+    format!(
+        "column {}, row {}: {red} {green} {blue} = {r} {g} {b}",
+        pixel.x, pixel.y
+    )
+}

@@ -1,0 +1,193 @@
+//! What is written over the picture: the menu, the keys, the information line, the inspected pixel, messages, the scale of errors.
+
+use std::time::{Duration, Instant};
+
+use egui::{
+    Align2, Area, Button, Color32, Context, Frame, Id, Rect, RichText, ScrollArea, Stroke,
+    StrokeKind, Ui,
+};
+use glam::UVec2;
+
+use super::action::{Action, key_table, rows};
+use super::menu::Menu;
+
+/// How long a message stays.
+const MESSAGE_TIME: Duration = Duration::from_secs(4);
+
+/// Everything that may lie over the picture.
+#[derive(Debug, Default)]
+pub(super) struct Sheet {
+    pub(super) menu: Option<Menu>,
+    pub(super) help: bool,
+    pub(super) information: bool,
+    /// An inspected pixel, and its text once it is there.
+    pub(super) inspected: Option<(UVec2, String)>,
+    message: Option<(String, Instant)>,
+}
+
+/// What the sheet says about the picture below it; each only where it is shown.
+#[derive(Debug, Default)]
+pub(super) struct Facts {
+    /// Stage, kernel, α, times.
+    pub(super) information: String,
+    /// The pixel under the pointer.
+    pub(super) pixel: String,
+    /// The square of the window, in points, that shows the inspected pixel.
+    pub(super) inspected: Option<Rect>,
+    /// The rows of the menu that stand for something that is on.
+    pub(super) on: Vec<Action>,
+    pub(super) kernel: &'static str,
+}
+
+impl Sheet {
+    /// Whether there is anything to draw.
+    pub(super) fn is_empty(&self) -> bool {
+        self.menu.is_none()
+            && !self.help
+            && !self.information
+            && self.inspected.is_none()
+            && self.message.is_none()
+    }
+
+    /// Whether the pixel under the pointer is named.
+    pub(super) fn names_pixels(&self) -> bool {
+        self.information || self.inspected.is_some()
+    }
+
+    /// Says `text` for a while.
+    pub(super) fn say(&mut self, text: String) {
+        self.message = Some((text, Instant::now() + MESSAGE_TIME));
+    }
+
+    /// Takes an old message away; when the present one will be old.
+    pub(super) fn expire(&mut self, now: Instant) -> Option<Instant> {
+        self.message.take_if(|(_, end)| *end <= now);
+        self.message.as_ref().map(|(_, end)| *end)
+    }
+
+    /// Closes what was opened last, if anything is open that hides the picture.
+    pub(super) fn close(&mut self) -> bool {
+        if self.menu.take().is_some() {
+            return true;
+        }
+        std::mem::take(&mut self.help) || self.inspected.take().is_some()
+    }
+
+    /// Lays everything out. A window may be smaller than any of it: then it is cut off, or scrolls.
+    pub(super) fn lay_out(&mut self, context: &Context, facts: &Facts) {
+        if let Some(square) = facts.inspected {
+            let layer = egui::LayerId::new(egui::Order::Background, Id::unique("inspected square"));
+            let painter = context.layer_painter(layer);
+            for (width, color) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
+                let stroke = Stroke::new(width, color);
+                painter.rect_stroke(square.expand(1.5), 0, stroke, StrokeKind::Middle);
+            }
+        }
+        let mut top = String::new();
+        if self.information {
+            top.clone_from(&facts.information);
+        }
+        if self.names_pixels() && !facts.pixel.is_empty() {
+            if !top.is_empty() {
+                top.push('\n');
+            }
+            top.push_str(&facts.pixel);
+        }
+        if !top.is_empty() {
+            panel(context, "information", Align2::LEFT_TOP, |ui| say(ui, &top));
+        }
+        if let Some((_, text)) = &self.inspected {
+            let text = format!("{text}(also on standard output; Esc closes)");
+            panel(context, "inspected", Align2::LEFT_BOTTOM, |ui| {
+                ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+                ui.label(RichText::new(text).monospace().size(10.0));
+            });
+        }
+        if self.help {
+            panel(context, "keys", Align2::CENTER_CENTER, |ui| {
+                say(ui, key_table().trim_end());
+                say(ui, MOUSE);
+            });
+        }
+        if let Some((text, _)) = &self.message {
+            panel(context, "message", Align2::CENTER_BOTTOM, |ui| {
+                say(ui, text)
+            });
+        }
+        if let Some(menu) = &mut self.menu {
+            draw_menu(context, menu, facts);
+        }
+    }
+}
+
+/// What the mouse does, below the keys.
+const MOUSE: &str = "wheel    zoom around the pointer\ndrag     move the picture\nclick    work a pixel through\nright    the menu";
+
+fn say(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).monospace().size(12.0));
+}
+
+/// A dark panel at a corner, a side or in the middle of the window.
+fn panel(context: &Context, name: &str, place: Align2, contents: impl FnOnce(&mut Ui)) {
+    Area::new(Id::unique(name))
+        .anchor(place, [0.0, 0.0])
+        .interactable(false)
+        .fade_in(false)
+        .show(context, |ui| {
+            Frame::new()
+                .fill(Color32::from_black_alpha(200))
+                .inner_margin(4)
+                .show(ui, |ui| {
+                    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+                    ui.visuals_mut().override_text_color = Some(Color32::WHITE);
+                    contents(ui);
+                });
+        });
+}
+
+fn draw_menu(context: &Context, menu: &mut Menu, facts: &Facts) {
+    let mut drawn = Vec::new();
+    let height = context.content_rect().height() - 12.0;
+    Area::new(Id::unique("menu"))
+        .order(egui::Order::Foreground)
+        .fixed_pos(menu.place)
+        .default_height(height)
+        .constrain(true)
+        .fade_in(false)
+        .show(context, |ui| {
+            Frame::menu(ui.style()).show(ui, |ui| {
+                let mut scroll = ScrollArea::vertical().max_height(height);
+                if menu.selected.is_none() {
+                    // Not where the last menu was left.
+                    scroll = scroll.vertical_scroll_offset(0.0);
+                }
+                scroll.show(ui, |ui| {
+                    for (number, row) in rows().enumerate() {
+                        if row.opens_group {
+                            ui.separator();
+                        }
+                        let mark = if facts.on.contains(&row.action) {
+                            "• "
+                        } else {
+                            "   "
+                        };
+                        let now = match row.action {
+                            Action::NextKernel => format!(" (now {})", facts.kernel),
+                            _ => String::new(),
+                        };
+                        let selected = menu.selected == Some(number);
+                        let text = format!("{mark}{}{now}", row.does);
+                        let button = Button::selectable(selected, RichText::new(text).size(12.0))
+                            .shortcut_text(RichText::new(row.keys).monospace().size(12.0))
+                            .min_size([330.0, 0.0].into());
+                        let response = ui.add(button);
+                        if selected {
+                            response.scroll_to_me(None);
+                        }
+                        drawn.push(response.rect.intersect(ui.clip_rect()));
+                    }
+                });
+            });
+        });
+    menu.drawn = drawn;
+}
