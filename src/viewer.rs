@@ -6,6 +6,7 @@
 
 mod action;
 mod app;
+mod comparison;
 mod error;
 mod frames;
 mod information;

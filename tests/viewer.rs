@@ -24,7 +24,7 @@ mod xvfb;
 use std::f64::consts::TAU;
 use std::fs;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use firsthit::camera::{ROUND, frame_angle};
 use firsthit::{Kernel, Scene, Stage, Tracer};
@@ -623,6 +623,102 @@ fn what_was_saved_is_said_in_the_window_for_a_while() {
     session.covers(500, Stage::Reflection, 0.0, "viewer-saved.png");
     session.shows(500, Stage::Reflection, 0.0);
     sleeps(&session);
+}
+
+#[test]
+fn the_error_view_shows_where_a_kernel_is_wrong() {
+    let arguments = [
+        "view", "--stage", "6", "--size", "300", "--kernel", "listing",
+    ];
+    let Some(mut session) = Session::start(&arguments) else {
+        return;
+    };
+    session.resize(600, 600);
+    session.type_keys("e");
+    // Away from the panel in the corner: false colours, each pixel of the picture four of the window.
+    let counts = |session: &Session, color| {
+        let pixels = session.pixels().unwrap();
+        let upper = pixels.bytes.iter().take(600 * 400);
+        upper.filter(|&&pixel| pixel == color).count()
+    };
+    let wrong = [0, 255, 0];
+    wait_for("wrong decisions", || {
+        (counts(&session, wrong) > 10_000).then_some(())
+    });
+    session.screenshot("viewer-errors-listing.png");
+    session.type_keys("kk");
+    wait_for("no error at all", || {
+        (counts(&session, [0; 3]) == 600 * 400).then_some(())
+    });
+    session.screenshot("viewer-errors-exact.png");
+    session.type_keys("e");
+    session.shows(300, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
+fn a_storm_of_resizes_ends_in_the_right_picture() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "120"]) else {
+        return;
+    };
+    session.type_keys("i");
+    for step in 0..300_u32 {
+        session.resize(1 + step * 37 % 900, 1 + step * 53 % 700);
+    }
+    session.type_keys("i");
+    session.resize(377, 251);
+    wait_for("the size", || (session.size() == (377, 251)).then_some(()));
+    session.shows(120, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1]);
+}
+
+/// How long the viewer is used at random, in seconds: so many as this variable says.
+const SOAK: &str = "FIRSTHIT_SOAK_SECONDS";
+
+#[test]
+fn used_at_random_it_stays_well_and_its_memory_bounded() {
+    let Some(mut session) = Session::start(&["view", "--size", "200"]) else {
+        return;
+    };
+    let seconds = std::env::var(SOAK).map_or(10, |seconds| seconds.parse().unwrap());
+    let start = Instant::now();
+    // Always the same choices: Knuth's generator in 64 bits.
+    let mut state = 1_u64;
+    let mut random = |below: u64| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let keys = b"1234567 .,+-0ekimhz";
+    let mut settled = None;
+    while start.elapsed() < Duration::from_secs(seconds) {
+        match random(12) {
+            0 => session.resize(1 + random(700) as u32, 1 + random(700) as u32),
+            1 => session.point(random(300) as i16, random(300) as i16),
+            2 => session.click(if random(2) == 0 { WHEEL_UP } else { WHEEL_DOWN }),
+            3 => session.click(RIGHT_BUTTON),
+            4 => session.press(if random(2) == 0 { UP } else { DOWN }),
+            5 => session.press(if random(2) == 0 { LEFT } else { RIGHT }),
+            _ => session.press(u32::from(keys[random(keys.len() as u64) as usize])),
+        }
+        thread::sleep(Duration::from_millis(5));
+        // By then everything has been open once.
+        if settled.is_none() && start.elapsed() > Duration::from_secs(seconds / 2) {
+            settled = Some(session.program.memory());
+        }
+    }
+    let (settled, end) = (settled.unwrap(), session.program.memory());
+    assert!(
+        end < settled + 64 * 1024,
+        "{settled} KiB, and then {end} KiB"
+    );
+    // It still does what it is told, whatever is open: Esc closes one thing after another, and then leaves.
+    session.close();
+    session.program.left();
 }
 
 #[test]

@@ -18,6 +18,7 @@ pub(super) enum Action {
     Zero,
     SavePng,
     SaveExr,
+    Errors,
     NextKernel,
     Information,
     Fit,
@@ -148,6 +149,15 @@ const BINDINGS: &[Binding] = &[
         ..Binding::new("Shift+S", "save the traced picture as an EXR", A::SaveExr)
     },
     Binding {
+        characters: &['e'],
+        places: &[C::KeyE],
+        ..Binding::new(
+            "E",
+            "how far this kernel is from reference, and back",
+            A::Errors,
+        )
+    },
+    Binding {
         characters: &['k'],
         places: &[C::KeyK],
         ..Binding::new("K", "the next kernel", A::NextKernel)
@@ -207,7 +217,7 @@ pub(super) fn rows() -> impl Iterator<Item = Row> {
         action: binding.action,
         opens_group: matches!(
             binding.action,
-            A::Pause | A::SavePng | A::NextKernel | A::Fit | A::Menu | A::Leave
+            A::Pause | A::SavePng | A::Errors | A::Fit | A::Menu | A::Leave
         ),
     })
 }

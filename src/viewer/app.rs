@@ -14,6 +14,7 @@ use crate::image::Format;
 use crate::{Kernel, Stage};
 
 use super::action::{Action, Press};
+use super::comparison::{self, Comparing, Errors};
 use super::frames::Meter;
 use super::information::{Times, information, name_pixel};
 use super::menu::Menu;
@@ -44,6 +45,12 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
     let studio = Studio::new(&options)?;
     let event_loop = event_loop()?;
     let proxy = event_loop.create_proxy();
+    let comparing = {
+        let proxy = proxy.clone();
+        Comparing::start(&options, move || {
+            let _ = proxy.send_event(());
+        })?
+    };
     let tracing = Tracing::start(studio, move || {
         // Without an event loop nobody waits for the picture.
         let _ = proxy.send_event(());
@@ -57,6 +64,8 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         exit_after_frames: options.exit_after_frames,
         report,
         tracing,
+        comparing,
+        errors: None,
         shown: None,
         view: None,
         uploaded: false,
@@ -90,6 +99,9 @@ struct App<'a> {
     exit_after_frames: Option<u64>,
     report: &'a mut dyn FnMut(Event),
     tracing: Tracing,
+    comparing: Comparing,
+    /// `None` where the picture is shown instead of its errors.
+    errors: Option<Errors>,
     /// The picture that came last.
     shown: Option<Traced>,
     /// `None` before the first [`ApplicationHandler::resumed`], and on systems that take the window away meanwhile.
@@ -200,7 +212,9 @@ impl App<'_> {
             }
             return Ok(());
         };
-        let image = (!self.uploaded).then_some(&*shown.image);
+        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
+        let image = compared.map_or(&shown.image, |compared| &compared.image);
+        let image = (!self.uploaded).then_some(&**image);
         self.counts.uploads += u64::from(image.is_some());
         let waits = self.sheet.information;
         let drawn = view.draw(image, (&mut self.sheet, &facts), waits)?;
@@ -225,7 +239,13 @@ impl App<'_> {
             self.look_around();
         }
         self.next_frame = start + self.frame_time;
-        if let Some(end) = message {
+        // The time that a comparison takes is seen to pass.
+        let comparing = self
+            .errors
+            .as_ref()
+            .filter(|errors| errors.is_busy())
+            .map(|_| start + PATIENCE);
+        if let Some(end) = message.into_iter().chain(comparing).min() {
             event_loop.set_control_flow(ControlFlow::WaitUntil(end));
         }
         self.schedule(event_loop);
@@ -255,12 +275,18 @@ impl App<'_> {
         if let Some((pixel, _)) = &self.sheet.inspected {
             facts.inspected = Some(view.square_in_points(*pixel));
         }
+        if let Some(errors) = &self.errors {
+            facts.errors = Some(errors.text());
+            let rings = errors.done.iter().flat_map(|compared| &compared.rings);
+            facts.rings = rings.map(|&pixel| view.square_in_points(pixel)).collect();
+        }
         facts.on.push(Action::Stage(self.stage));
         for (on, action) in [
             (
                 self.stage == Stage::Animation && self.playback.paused(),
                 Action::Pause,
             ),
+            (self.errors.is_some(), Action::Errors),
             (self.sheet.information, Action::Information),
             (self.sheet.help, Action::Help),
         ] {
@@ -354,6 +380,21 @@ impl App<'_> {
                 Reply::Failed(error) => return Err(error),
             }
         }
+        self.compare();
+        while let Some(reply) = self.comparing.reply() {
+            let Some(errors) = &mut self.errors else {
+                continue;
+            };
+            match reply {
+                comparison::Reply::Begun(what) => errors.doing = what,
+                comparison::Reply::Done(compared) => {
+                    errors.done = Some(compared);
+                    self.uploaded = false;
+                }
+                comparison::Reply::Failed(error) => return Err(error),
+            }
+            self.touch();
+        }
         Ok(())
     }
 
@@ -382,6 +423,7 @@ impl App<'_> {
             Action::Zero => self.playback.zero(),
             Action::SavePng => self.save(Format::Png),
             Action::SaveExr => self.save(Format::Exr),
+            Action::Errors => self.toggle_errors(),
             Action::NextKernel => self.next_kernel(),
             Action::Information => {
                 self.sheet.information = !self.sheet.information;
@@ -447,6 +489,28 @@ impl App<'_> {
             }
         }
         self.touch();
+    }
+
+    /// Shows the errors of the picture, or the picture again.
+    fn toggle_errors(&mut self) {
+        self.errors = match self.errors {
+            Some(_) => None,
+            None => Some(Errors::default()),
+        };
+        self.uploaded = false;
+        self.compare();
+        self.touch();
+    }
+
+    /// Asks for the errors of the picture that is shown, if they are to be seen.
+    fn compare(&mut self) {
+        if let (Some(errors), Some(shown)) = (&mut self.errors, &self.shown) {
+            let wanted = Some(shown.frame);
+            if errors.begun.is_none_or(|(frame, _)| Some(frame) != wanted) {
+                errors.begun = Some((shown.frame, Instant::now()));
+            }
+            self.comparing.wish(shown.frame);
+        }
     }
 
     fn next_kernel(&mut self) {

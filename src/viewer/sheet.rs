@@ -8,7 +8,10 @@ use egui::{
 };
 use glam::UVec2;
 
+use crate::difference::error_color;
+
 use super::action::{Action, key_table, rows};
+use super::comparison::WRONG;
 use super::menu::Menu;
 
 /// How long a message stays.
@@ -34,6 +37,10 @@ pub(super) struct Facts {
     pub(super) pixel: String,
     /// The square of the window, in points, that shows the inspected pixel.
     pub(super) inspected: Option<Rect>,
+    /// What the error view says.
+    pub(super) errors: Option<String>,
+    /// The squares of the window, in points, that show wrong pixels.
+    pub(super) rings: Vec<Rect>,
     /// The rows of the menu that stand for something that is on.
     pub(super) on: Vec<Action>,
     pub(super) kernel: &'static str,
@@ -83,6 +90,13 @@ impl Sheet {
                 painter.rect_stroke(square.expand(1.5), 0, stroke, StrokeKind::Middle);
             }
         }
+        if let Some(text) = &facts.errors {
+            ring(context, &facts.rings);
+            panel(context, "errors", Align2::RIGHT_BOTTOM, |ui| {
+                say(ui, text);
+                draw_scale(ui);
+            });
+        }
         let mut top = String::new();
         if self.information {
             top.clone_from(&facts.information);
@@ -118,6 +132,55 @@ impl Sheet {
             draw_menu(context, menu, facts);
         }
     }
+}
+
+/// Rings around squares, however small they are.
+fn ring(context: &Context, squares: &[Rect]) {
+    let layer = egui::LayerId::new(egui::Order::Background, Id::unique("rings"));
+    let painter = context.layer_painter(layer);
+    for square in squares {
+        let radius = square.width() / 2.0 + 5.0;
+        painter.circle_stroke(square.center(), radius, Stroke::new(1.5, rgb(WRONG)));
+    }
+}
+
+fn rgb([red, green, blue]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+/// The scale of the error view: its colours from 1 f32 step to 2²⁴, those without an error, and those that are no number.
+fn draw_scale(ui: &mut Ui) {
+    const OCTAVES: u32 = 24;
+    const WIDTH: f32 = 8.0;
+    let (strip, _) = ui.allocate_exact_size([25.0 * WIDTH, 10.0].into(), egui::Sense::hover());
+    for octave in 0..=OCTAVES {
+        let left = strip.min + egui::vec2(octave as f32 * WIDTH, 0.0);
+        let rect = Rect::from_min_size(left, [WIDTH, strip.height()].into());
+        let color = rgb(error_color(Some(1 << octave)));
+        ui.painter().rect_filled(rect, 0, color);
+    }
+    let (labels, _) = ui.allocate_exact_size([230.0, 14.0].into(), egui::Sense::hover());
+    for (octave, label) in [(0, "1"), (8, "2⁸"), (16, "2¹⁶"), (24, "2²⁴ ULP")] {
+        let place = labels.min + egui::vec2(octave as f32 * WIDTH, 0.0);
+        let font = egui::FontId::monospace(12.0);
+        let white = Color32::WHITE;
+        ui.painter()
+            .text(place, Align2::LEFT_TOP, label, font, white);
+    }
+    ui.horizontal(|ui| {
+        for (color, meaning) in [
+            (error_color(Some(0)), "exact"),
+            (error_color(None), "NaN"),
+            (WRONG, "wrong decision"),
+        ] {
+            let (square, _) = ui.allocate_exact_size([10.0, 10.0].into(), egui::Sense::hover());
+            ui.painter().rect_filled(square, 0, rgb(color));
+            let frame = Stroke::new(1.0, Color32::GRAY);
+            ui.painter()
+                .rect_stroke(square, 0, frame, StrokeKind::Inside);
+            say(ui, meaning);
+        }
+    });
 }
 
 /// What the mouse does, below the keys.

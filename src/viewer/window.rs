@@ -223,7 +223,7 @@ impl View {
         }
         let uploaded = Instant::now();
         drawing.screen.draw(surface, placement);
-        if !sheet.is_empty() {
+        if !sheet.is_empty() || facts.errors.is_some() {
             let overlay = match drawing.overlay.take() {
                 Some(overlay) => overlay,
                 None => Overlay::new(functions(&self.config.display()))?,

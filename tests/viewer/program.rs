@@ -101,6 +101,15 @@ impl Program {
         switches.chain(ticks).map(str::to_owned).collect()
     }
 
+    /// The memory that it has in use, in KiB.
+    pub fn memory(&self) -> u64 {
+        let status = format!("/proc/{}/status", self.process.id());
+        let status = std::fs::read_to_string(status).unwrap();
+        let line = status.lines().find(|line| line.starts_with("VmRSS:"));
+        let kibibytes = line.unwrap().split_whitespace().nth(1);
+        kibibytes.unwrap().parse().unwrap()
+    }
+
     /// Waits until it has ended: its status, and all of its standard error.
     pub fn ended(&mut self) -> (ExitStatus, String) {
         let status = wait_for("the program's end", || self.process.try_wait().unwrap());

@@ -276,7 +276,7 @@ impl Session {
     }
 
     /// What the window shows, if it can be read.
-    fn pixels(&self) -> Option<Pixels> {
+    pub fn pixels(&self) -> Option<Pixels> {
         let (width, height) = self.size();
         let image = self
             .connection

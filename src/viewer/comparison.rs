@@ -1,0 +1,221 @@
+//! The error view: the shown kernel against `reference`, on a thread of its own.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::UVec2;
+
+use crate::difference::{error_color, steps};
+use crate::tracer::Decision;
+use crate::{Image, Kernel, Scene, Tracer};
+
+use super::tracing::Frame;
+use super::worker::Worker;
+use super::{Options, ViewerError};
+
+/// The colour of a pixel with a wrong decision: none of the scale's.
+pub(super) const WRONG: [u8; 3] = [0, 255, 0];
+
+/// Wrong pixels are ringed one by one in tiles of so many pixels a side, as long as a tile has few of them.
+const TILE: usize = 16;
+const FEW: usize = 4;
+
+/// Rings are for single pixels; where there are more than this, nobody looks for one.
+const MAX_RINGS: usize = 512;
+
+/// How far a picture is from the truth.
+pub(super) struct Compared {
+    pub(super) frame: Frame,
+    /// In false colours.
+    pub(super) image: Arc<Image>,
+    /// Wrong pixels, column and row, that could be missed.
+    pub(super) rings: Vec<UVec2>,
+    /// Pixels with a wrong decision.
+    pub(super) wrong: usize,
+    /// Samples that are not those of `reference`.
+    pub(super) misrounded: usize,
+    /// The largest error in f32 steps of pixels that are decided rightly.
+    pub(super) largest: u32,
+}
+
+/// What the thread answers.
+pub(super) enum Reply {
+    /// What it is about to do.
+    Begun(&'static str),
+    Done(Compared),
+    Failed(ViewerError),
+}
+
+/// The error view, while it is shown.
+#[derive(Default)]
+pub(super) struct Errors {
+    /// The frame that is compared now or was compared last, and since when.
+    pub(super) begun: Option<(Frame, Instant)>,
+    pub(super) doing: &'static str,
+    /// What the window shows.
+    pub(super) done: Option<Compared>,
+}
+
+impl Errors {
+    /// Whether a comparison is going on.
+    pub(super) fn is_busy(&self) -> bool {
+        let done = self.done.as_ref().map(|compared| compared.frame);
+        self.begun.is_some_and(|(frame, _)| done != Some(frame))
+    }
+
+    /// What is seen, and how far the next comparison is.
+    pub(super) fn text(&self) -> String {
+        let mut lines = Vec::new();
+        if let Some(compared) = &self.done {
+            lines.push(format!(
+                "{} against reference\n\
+                 {} wrong pixels (green, single ones ringed)\n\
+                 {} misrounded samples, at most {} f32 steps off",
+                compared.frame.kernel.name(),
+                compared.wrong,
+                compared.misrounded,
+                compared.largest,
+            ));
+        }
+        if let Some((frame, since)) = self.begun.filter(|_| self.is_busy()) {
+            lines.push(format!(
+                "{}: {} … {:.1} s",
+                frame.kernel.name(),
+                self.doing,
+                since.elapsed().as_secs_f64()
+            ));
+        }
+        lines.join("\n")
+    }
+}
+
+/// The thread that compares.
+pub(super) struct Comparing {
+    worker: Worker<Frame, Reply>,
+    wished: Option<Frame>,
+}
+
+impl Comparing {
+    /// Starts the thread; `wake` is called there when there is a reply.
+    ///
+    /// # Errors
+    /// Where the system has no thread left.
+    pub(super) fn start(
+        options: &Options,
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<Comparing, ViewerError> {
+        let (scene, size, threads) = (options.scene.clone(), options.size, options.threads);
+        let worker = Worker::start("comparing", wake, move |frame, reply| {
+            let answer = compare(&scene, size, threads, frame, &mut |what| {
+                reply(Reply::Begun(what));
+            });
+            reply(answer.map_or_else(Reply::Failed, Reply::Done));
+        })
+        .map_err(ViewerError::Thread)?;
+        Ok(Comparing {
+            worker,
+            wished: None,
+        })
+    }
+
+    /// Wishes for the errors of `frame`, unless that was the last wish.
+    pub(super) fn wish(&mut self, frame: Frame) {
+        if self.wished != Some(frame) {
+            self.wished = Some(frame);
+            self.worker.wish(frame);
+        }
+    }
+
+    pub(super) fn reply(&self) -> Option<Reply> {
+        self.worker.reply()
+    }
+}
+
+fn compare(
+    scene: &Scene,
+    size: u32,
+    threads: usize,
+    frame: Frame,
+    begin: &mut dyn FnMut(&'static str),
+) -> Result<Compared, ViewerError> {
+    let trace = |kernel| -> Result<(Image, Vec<Decision>), ViewerError> {
+        let mut image = Image::new(size)?;
+        let decisions = Tracer::new(kernel, threads)?.trace_with_decisions(
+            scene,
+            frame.stage,
+            frame.alpha,
+            &mut image,
+        )?;
+        Ok((image, decisions))
+    };
+    begin("tracing the kernel's picture");
+    let (mut image, decisions) = trace(frame.kernel)?;
+    begin("tracing reference");
+    let (truth, true_decisions) = trace(Kernel::Reference)?;
+    begin("comparing");
+    let wrong: Vec<bool> = decisions
+        .iter()
+        .zip(&true_decisions)
+        .map(|(decision, truth)| decision != truth)
+        .collect();
+    let (mut misrounded, mut largest) = (0, 0);
+    let pixels = image.samples_mut().chunks_exact_mut(3);
+    for ((samples, truth), &wrong) in pixels.zip(truth.samples().chunks_exact(3)).zip(&wrong) {
+        let errors = [0, 1, 2].map(|channel| steps(samples[channel], truth[channel]));
+        misrounded += errors.iter().filter(|&&error| error != Some(0)).count();
+        // A NaN in the place of a number is worse than any number.
+        let worst = match errors {
+            [Some(red), Some(green), Some(blue)] => Some(red.max(green).max(blue)),
+            _ => None,
+        };
+        let color = if wrong {
+            WRONG
+        } else {
+            largest = largest.max(worst.unwrap_or(u32::MAX));
+            error_color(worst)
+        };
+        for (sample, byte) in samples.iter_mut().zip(color) {
+            *sample = f32::from(byte) / 255.0;
+        }
+    }
+    Ok(Compared {
+        frame,
+        image: Arc::new(image),
+        rings: rings(&wrong, size as usize),
+        wrong: wrong.iter().filter(|&&wrong| wrong).count(),
+        misrounded,
+        largest,
+    })
+}
+
+/// The pixels of `wrong`, rows of `size`, that are few in their tile.
+fn rings(wrong: &[bool], size: usize) -> Vec<UVec2> {
+    let tiles = size.div_ceil(TILE);
+    let mut found = vec![Vec::new(); tiles * tiles];
+    for (number, _) in wrong.iter().enumerate().filter(|(_, wrong)| **wrong) {
+        let (column, row) = (number % size, number / size);
+        let tile = &mut found[row / TILE * tiles + column / TILE];
+        if tile.len() <= FEW {
+            tile.push(UVec2::new(column as u32, row as u32));
+        }
+    }
+    let few = found.into_iter().filter(|tile| tile.len() <= FEW);
+    few.flatten().take(MAX_RINGS).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_wrong_pixels_are_ringed_and_crowds_are_not() {
+        let size = 40;
+        let mut wrong = vec![false; size * size];
+        wrong[3 * size + 39] = true;
+        for column in 0..12 {
+            wrong[20 * size + column] = true;
+        }
+        assert_eq!(rings(&wrong, size), [UVec2::new(39, 3)]);
+        assert!(rings(&[], 0).is_empty());
+    }
+}
