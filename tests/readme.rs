@@ -100,6 +100,13 @@ fn it_names_every_picture_and_every_key() {
             "{name}"
         );
     }
+    // Taken by the tests of the viewer.
+    for name in ["viewer-menu", "viewer-errors"] {
+        let path = format!("tests/images/{name}.png");
+        assert!(readme.contains(&format!("({path})")), "{name}");
+        let png = BufReader::new(File::open(file(&path)).unwrap());
+        png::Decoder::new(png).read_info().unwrap();
+    }
     for line in viewer::key_table().lines() {
         let (keys, does) = line.split_once("  ").unwrap();
         let row = format!("| {} | {} |", keys, does.trim());

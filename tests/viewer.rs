@@ -722,6 +722,41 @@ fn used_at_random_it_stays_well_and_its_memory_bounded() {
 }
 
 #[test]
+fn a_dense_display_gets_the_same_pixels_and_a_menu_twice_as_large() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let dense = ("WINIT_X11_SCALE_FACTOR", "2");
+    let session = Session::on(xvfb, &["view", "--stage", "6"], &[dense]);
+    session.shows(500, Stage::Reflection, 0.0);
+    session.point(20, 20);
+    session.click(RIGHT_BUTTON);
+    session.covers(500, Stage::Reflection, 0.0, "viewer-menu-dense.png");
+    // In the middle of the second row, 16 points below that of the first.
+    session.point(100, 20 + 2 * (14 + 16));
+    session.click(LEFT_BUTTON);
+    session.shows(500, Stage::Spheres, 0.0);
+}
+
+#[test]
+fn a_kernel_that_refuses_the_scene_is_passed_over() {
+    let scenes = tempfile::tempdir().unwrap();
+    let path = scenes.path().join("empty.toml");
+    fs::write(&path, "").unwrap();
+    let arguments = ["view", "--stage", "6", "--size", "40", "--scene"];
+    let arguments = [&arguments[..], &[path.to_str().unwrap()]].concat();
+    let Some(mut session) = Session::start(&arguments) else {
+        return;
+    };
+    for kernel in ["fast", "double", "reference", "exact"] {
+        session.type_keys("k");
+        session.titled(&[&format!("— {kernel} —")]);
+    }
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
 fn k_goes_through_the_kernels() {
     let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "40"]) else {
         return;
