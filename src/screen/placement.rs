@@ -164,8 +164,8 @@ mod tests {
 
     #[test]
     fn from_the_window_to_the_picture_and_back() {
-        let size = 13;
-        for placement in placements(size) {
+        let both = [12, 13].map(|size| placements(size).map(move |placement| (size, placement)));
+        for (size, placement) in both.into_iter().flatten() {
             let mut shown = vec![0_u64; (size * size) as usize];
             let extent = placement.extent as i32;
             for y in -50..extent + 50 {
