@@ -1,25 +1,21 @@
-//! What happens when: the events of the window, the keys, and the redisplay.
+//! What happens when: the actions, the redisplay, and what the other threads have done.
+
+mod events;
 
 use std::time::{Duration, Instant};
 
-use egui::Pos2;
-use glam::IVec2;
-use winit::application::ApplicationHandler;
-use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::keyboard::{Key, ModifiersState, NamedKey};
-use winit::window::WindowId;
+use winit::keyboard::ModifiersState;
 
 use crate::image::Format;
 use crate::{Kernel, Stage};
 
-use super::action::{Action, Press};
+use super::action::Action;
 use super::comparison::{self, Comparing, Errors};
 use super::frames::Meter;
 use super::information::{Times, information, name_pixel};
-use super::menu::Menu;
 use super::playback::Playback;
-use super::pointer::{Gesture, Pointer};
+use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
 use super::sheet::{Facts, Sheet};
@@ -104,7 +100,7 @@ struct App<'a> {
     errors: Option<Errors>,
     /// The picture that came last.
     shown: Option<Traced>,
-    /// `None` before the first [`ApplicationHandler::resumed`], and on systems that take the window away meanwhile.
+    /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     view: Option<View>,
     /// The texture holds the picture.
     uploaded: bool,
@@ -467,30 +463,6 @@ impl App<'_> {
         self.ask_for_redraw();
     }
 
-    /// What the pointer asks for.
-    fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
-        if self.sheet.menu.is_some() {
-            self.point_at_menu(event_loop, gesture);
-            return;
-        }
-        let Some(view) = &mut self.view else {
-            return;
-        };
-        match gesture {
-            Gesture::Drag { by } => view.drag(by),
-            Gesture::Wheel { steps, at } => view.zoom(steps, at),
-            Gesture::Hover if self.sheet.names_pixels() => {}
-            Gesture::Hover => return,
-            Gesture::Click { at } => {
-                if let (Some(pixel), Some(shown)) = (view.picture_pixel(at), &self.shown) {
-                    self.tracing.explain(shown.frame, pixel);
-                }
-                return;
-            }
-        }
-        self.touch();
-    }
-
     /// Shows the errors of the picture, or the picture again.
     fn toggle_errors(&mut self) {
         self.errors = match self.errors {
@@ -517,71 +489,6 @@ impl App<'_> {
         let kernels = Kernel::ALL.iter().cycle();
         let next = kernels.skip_while(|&&kernel| kernel != self.kernel).nth(1);
         self.kernel = next.copied().unwrap_or_default();
-    }
-
-    /// Opens the menu at a pixel of the window, or at the corner, or closes it.
-    fn toggle_menu(&mut self, place: Option<IVec2>) {
-        if self.sheet.menu.take().is_none()
-            && let Some(view) = &self.view
-        {
-            let place = place.map_or(Pos2::ZERO, |place| view.in_points(place));
-            self.sheet.menu = Some(Menu::open(place));
-        }
-        self.touch();
-    }
-
-    /// What a key does while the menu is open, if it is one of the menu's own.
-    fn menu_key(&mut self, event_loop: &ActiveEventLoop, key: &Key) -> bool {
-        let Some(menu) = &mut self.sheet.menu else {
-            return false;
-        };
-        match key {
-            Key::Named(NamedKey::ArrowDown) => menu.step(1),
-            Key::Named(NamedKey::ArrowUp) => menu.step(-1),
-            Key::Named(NamedKey::Enter) => {
-                let chosen = menu.chosen();
-                self.sheet.menu = None;
-                if let Some(action) = chosen {
-                    self.choose(event_loop, action);
-                }
-            }
-            _ => return false,
-        }
-        self.touch();
-        true
-    }
-
-    /// Does what a row of the menu says.
-    fn choose(&mut self, event_loop: &ActiveEventLoop, action: Action) {
-        // The menu has just been closed.
-        if action != Action::Menu {
-            self.act(event_loop, action);
-        }
-    }
-
-    /// What the pointer asks for while the menu is open.
-    fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
-        let (Some(view), Some(menu)) = (&self.view, &mut self.sheet.menu) else {
-            return;
-        };
-        match gesture {
-            Gesture::Hover => {
-                let under = self.pointer.place().map(|place| view.in_points(place));
-                if !under.is_some_and(|place| menu.hover(place)) {
-                    return;
-                }
-            }
-            Gesture::Wheel { steps, .. } => menu.step(-steps as isize),
-            Gesture::Drag { .. } => return,
-            Gesture::Click { at } => {
-                let action = menu.click(view.in_points(at));
-                self.sheet.menu = None;
-                if let Some(action) = action {
-                    self.choose(event_loop, action);
-                }
-            }
-        }
-        self.touch();
     }
 
     fn ask_for_redraw(&self) {
@@ -644,113 +551,6 @@ impl App<'_> {
             self.failure.get_or_insert(failure);
             event_loop.exit();
         }
-    }
-}
-
-impl ApplicationHandler for App<'_> {
-    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.view.is_none() {
-            let opened = self.open(event_loop);
-            self.check(event_loop, opened);
-        }
-    }
-
-    fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
-        self.view = None;
-    }
-
-    fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
-        // While the display is still open.
-        self.view = None;
-    }
-
-    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
-        if let StartCause::ResumeTimeReached { .. } = cause {
-            event_loop.set_control_flow(ControlFlow::Wait);
-            self.overdue = true;
-            self.ask_for_redraw();
-        }
-    }
-
-    fn user_event(&mut self, event_loop: &ActiveEventLoop, (): ()) {
-        let received = self.receive(event_loop);
-        self.check(event_loop, received);
-    }
-
-    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        match event {
-            WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
-            WindowEvent::RedrawRequested => {
-                let drawn = self.redraw(event_loop);
-                self.check(event_loop, drawn);
-            }
-            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
-            WindowEvent::KeyboardInput {
-                event,
-                is_synthetic: false,
-                ..
-            } if event.state.is_pressed() => {
-                if self.menu_key(event_loop, &event.logical_key) {
-                } else if event.logical_key == Key::Named(NamedKey::Escape) && self.sheet.close() {
-                    self.touch();
-                } else if let Some(action) = self.pressed(&event) {
-                    self.act(event_loop, action);
-                }
-            }
-            WindowEvent::CursorMoved { position, .. } => {
-                if let Some(view) = &self.view
-                    && let Some(gesture) = self.pointer.moved(view.window_pixel(position))
-                {
-                    self.point(event_loop, gesture);
-                }
-            }
-            WindowEvent::CursorLeft { .. } => self.pointer.left(),
-            WindowEvent::MouseInput {
-                state,
-                button: MouseButton::Left,
-                ..
-            } => {
-                if let Some(gesture) = self.pointer.pressed(state.is_pressed()) {
-                    self.point(event_loop, gesture);
-                }
-            }
-            WindowEvent::MouseInput {
-                state: ElementState::Pressed,
-                button: MouseButton::Right,
-                ..
-            } => self.toggle_menu(self.pointer.place()),
-            WindowEvent::MouseWheel { delta, .. } => {
-                if let Some(gesture) = self.pointer.wheel(delta) {
-                    self.point(event_loop, gesture);
-                }
-            }
-            WindowEvent::Resized(size) => {
-                if let Some(view) = &mut self.view {
-                    view.resize(size);
-                    view.window().request_redraw();
-                }
-            }
-            WindowEvent::Occluded(occluded) => {
-                self.occluded = occluded;
-                if let Some(view) = self.view.as_ref().filter(|_| !occluded) {
-                    view.window().request_redraw();
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-impl App<'_> {
-    fn pressed(&self, event: &KeyEvent) -> Option<Action> {
-        let press = Press {
-            meaning: &event.logical_key,
-            place: event.physical_key,
-            location: event.location,
-            modifiers: self.modifiers,
-            repeat: event.repeat,
-        };
-        press.action()
     }
 }
 

@@ -1,0 +1,210 @@
+//! The events of the window: keys, the pointer, and what the display asks for.
+
+use egui::Pos2;
+use glam::IVec2;
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::WindowId;
+
+use super::App;
+use crate::viewer::action::{Action, Press};
+use crate::viewer::menu::Menu;
+use crate::viewer::pointer::Gesture;
+
+impl ApplicationHandler for App<'_> {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.view.is_none() {
+            let opened = self.open(event_loop);
+            self.check(event_loop, opened);
+        }
+    }
+
+    fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
+        self.view = None;
+    }
+
+    fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
+        // While the display is still open.
+        self.view = None;
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if let StartCause::ResumeTimeReached { .. } = cause {
+            event_loop.set_control_flow(ControlFlow::Wait);
+            self.overdue = true;
+            self.ask_for_redraw();
+        }
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, (): ()) {
+        let received = self.receive(event_loop);
+        self.check(event_loop, received);
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
+            WindowEvent::RedrawRequested => {
+                let drawn = self.redraw(event_loop);
+                self.check(event_loop, drawn);
+            }
+            WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic: false,
+                ..
+            } if event.state.is_pressed() => {
+                if self.menu_key(event_loop, &event.logical_key) {
+                } else if event.logical_key == Key::Named(NamedKey::Escape) && self.sheet.close() {
+                    self.touch();
+                } else if let Some(action) = self.pressed(&event) {
+                    self.act(event_loop, action);
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                if let Some(view) = &self.view
+                    && let Some(gesture) = self.pointer.moved(view.window_pixel(position))
+                {
+                    self.point(event_loop, gesture);
+                }
+            }
+            WindowEvent::CursorLeft { .. } => self.pointer.left(),
+            WindowEvent::MouseInput {
+                state,
+                button: MouseButton::Left,
+                ..
+            } => {
+                if let Some(gesture) = self.pointer.pressed(state.is_pressed()) {
+                    self.point(event_loop, gesture);
+                }
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Pressed,
+                button: MouseButton::Right,
+                ..
+            } => self.toggle_menu(self.pointer.place()),
+            WindowEvent::MouseWheel { delta, .. } => {
+                if let Some(gesture) = self.pointer.wheel(delta) {
+                    self.point(event_loop, gesture);
+                }
+            }
+            WindowEvent::Resized(size) => {
+                if let Some(view) = &mut self.view {
+                    view.resize(size);
+                    view.window().request_redraw();
+                }
+            }
+            WindowEvent::Occluded(occluded) => {
+                self.occluded = occluded;
+                if let Some(view) = self.view.as_ref().filter(|_| !occluded) {
+                    view.window().request_redraw();
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+impl App<'_> {
+    fn pressed(&self, event: &KeyEvent) -> Option<Action> {
+        let press = Press {
+            meaning: &event.logical_key,
+            place: event.physical_key,
+            location: event.location,
+            modifiers: self.modifiers,
+            repeat: event.repeat,
+        };
+        press.action()
+    }
+
+    /// What the pointer asks for.
+    fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
+        if self.sheet.menu.is_some() {
+            self.point_at_menu(event_loop, gesture);
+            return;
+        }
+        let Some(view) = &mut self.view else {
+            return;
+        };
+        match gesture {
+            Gesture::Drag { by } => view.drag(by),
+            Gesture::Wheel { steps, at } => view.zoom(steps, at),
+            Gesture::Hover if self.sheet.names_pixels() => {}
+            Gesture::Hover => return,
+            Gesture::Click { at } => {
+                if let (Some(pixel), Some(shown)) = (view.picture_pixel(at), &self.shown) {
+                    self.tracing.explain(shown.frame, pixel);
+                }
+                return;
+            }
+        }
+        self.touch();
+    }
+
+    /// Opens the menu at a pixel of the window, or at the corner, or closes it.
+    pub(super) fn toggle_menu(&mut self, place: Option<IVec2>) {
+        if self.sheet.menu.take().is_none()
+            && let Some(view) = &self.view
+        {
+            let place = place.map_or(Pos2::ZERO, |place| view.in_points(place));
+            self.sheet.menu = Some(Menu::open(place));
+        }
+        self.touch();
+    }
+
+    /// What a key does while the menu is open, if it is one of the menu's own.
+    fn menu_key(&mut self, event_loop: &ActiveEventLoop, key: &Key) -> bool {
+        let Some(menu) = &mut self.sheet.menu else {
+            return false;
+        };
+        match key {
+            Key::Named(NamedKey::ArrowDown) => menu.step(1),
+            Key::Named(NamedKey::ArrowUp) => menu.step(-1),
+            Key::Named(NamedKey::Enter) => {
+                let chosen = menu.chosen();
+                self.sheet.menu = None;
+                if let Some(action) = chosen {
+                    self.choose(event_loop, action);
+                }
+            }
+            _ => return false,
+        }
+        self.touch();
+        true
+    }
+
+    /// Does what a row of the menu says.
+    fn choose(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        // The menu has just been closed.
+        if action != Action::Menu {
+            self.act(event_loop, action);
+        }
+    }
+
+    /// What the pointer asks for while the menu is open.
+    fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
+        let (Some(view), Some(menu)) = (&self.view, &mut self.sheet.menu) else {
+            return;
+        };
+        match gesture {
+            Gesture::Hover => {
+                let under = self.pointer.place().map(|place| view.in_points(place));
+                if !under.is_some_and(|place| menu.hover(place)) {
+                    return;
+                }
+            }
+            Gesture::Wheel { steps, .. } => menu.step(-steps as isize),
+            Gesture::Drag { .. } => return,
+            Gesture::Click { at } => {
+                let action = menu.click(view.in_points(at));
+                self.sheet.menu = None;
+                if let Some(action) = action {
+                    self.choose(event_loop, action);
+                }
+            }
+        }
+        self.touch();
+    }
+}
