@@ -247,7 +247,7 @@ impl Tracer {
         self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)
     }
 
-    /// The same, and what was decided for each pixel: N² decisions, rows from the bottom.
+    /// As [`Tracer::trace`], and what was decided for each pixel: N² decisions, rows from the bottom.
     ///
     /// # Errors
     /// As [`Tracer::trace`].

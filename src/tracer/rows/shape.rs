@@ -385,14 +385,7 @@ impl Ellipse {
         } else {
             (0, 0)
         };
-        Span {
-            possible,
-            certain: if certain.0 < certain.1 {
-                certain
-            } else {
-                (possible.0, possible.0)
-            },
-        }
+        Span::new(possible, certain)
     }
 
     /// The rows that it can cross.

@@ -15,6 +15,18 @@ impl Span {
         certain: (0, 0),
     };
 
+    /// Columns of which the certain ones may be none.
+    pub(super) fn new(possible: (u32, u32), certain: (u32, u32)) -> Span {
+        Span {
+            possible,
+            certain: if certain.0 < certain.1 {
+                certain
+            } else {
+                (possible.0, possible.0)
+            },
+        }
+    }
+
     /// All columns.
     pub(super) fn whole(size: u32) -> Span {
         Span {
@@ -43,17 +55,10 @@ impl Span {
         if possible.0 >= possible.1 {
             return Span::NONE;
         }
-        Span {
-            possible,
-            certain: if certain.0 < certain.1 {
-                certain
-            } else {
-                (possible.0, possible.0)
-            },
-        }
+        Span::new(possible, certain)
     }
 
-    /// Whether a run of columns, none of which is beyond an end of it, belongs to it; `None` where that is not known.
+    /// Whether a column belongs to it; `None` where that is not known.
     pub(super) fn holds(&self, column: u32) -> Option<bool> {
         if column < self.possible.0 || column >= self.possible.1 {
             Some(false)
