@@ -26,6 +26,7 @@
 mod ball;
 mod lanes;
 mod plain;
+mod row;
 mod shape;
 mod solids;
 mod span;
@@ -34,13 +35,15 @@ use fearless_simd::{Level, dispatch};
 
 use super::InDoubt;
 use super::decision::Decision;
-use super::ladder::{Lines, Pixels};
+use super::ladder::Lines;
 use super::pixel::{self, Picture, quadrant};
 use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
 use lanes::{Run, Shade};
+pub(super) use row::Memory;
+use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
 use solids::{Body, Facet, Pair, Solid, Solids};
 use span::Span;
@@ -115,95 +118,6 @@ impl Crossed {
             }
         }
         true
-    }
-}
-
-/// The columns of a row that were last given one colour.
-#[derive(Default)]
-pub(super) struct Memory {
-    filled: Vec<(Columns, [u32; 3])>,
-    /// The same of the frame that is being traced.
-    next: Vec<(Columns, [u32; 3])>,
-}
-
-impl Memory {
-    /// Forgets the row, which others may have written.
-    pub(super) fn clear(&mut self) {
-        self.filled.clear();
-    }
-}
-
-/// A row that is being written.
-struct Row<'r> {
-    level: Level,
-    number: u32,
-    /// Y.
-    y: f64,
-    samples: &'r mut [f32],
-    decisions: Option<&'r mut [Decision]>,
-    /// What the samples are from the frame before, where only what differs is to be written.
-    memory: Option<&'r mut Memory>,
-    in_doubt: InDoubt,
-}
-
-/// Columns, from the first to before the last.
-type Columns = (u32, u32);
-
-impl Row<'_> {
-    /// The same samples in all columns.
-    fn fill(&mut self, (from, to): Columns, decision: Decision, color: [f32; 3]) {
-        if let Some(decisions) = &mut self.decisions {
-            decisions[from as usize..to as usize].fill(decision);
-        }
-        let Some(memory) = self.memory.take() else {
-            return self.write((from, to), color);
-        };
-        let bits = color.map(f32::to_bits);
-        match memory.next.last_mut() {
-            Some((columns, same)) if columns.1 == from && *same == bits => columns.1 = to,
-            _ => memory.next.push(((from, to), bits)),
-        }
-        // What lies between runs that had this colour already.
-        let mut begin = from;
-        for &((first, end), before) in &memory.filled {
-            if before == bits && first < to && end > begin {
-                if first > begin {
-                    self.write((begin, first), color);
-                }
-                begin = end;
-            }
-        }
-        if begin < to {
-            self.write((begin, to), color);
-        }
-        self.memory = Some(memory);
-    }
-
-    fn write(&mut self, (from, to): Columns, color: [f32; 3]) {
-        let samples = &mut self.samples[3 * from as usize..3 * to as usize];
-        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
-    }
-
-    /// The row is written.
-    fn finish(self) -> InDoubt {
-        if let Some(memory) = self.memory {
-            std::mem::swap(&mut memory.filled, &mut memory.next);
-            memory.next.clear();
-        }
-        self.in_doubt
-    }
-
-    /// Asks for each pixel by itself.
-    fn ask(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &impl Pixels) {
-        for column in columns {
-            let ((decision, color), rung) = pixels.pixel(column, self.number);
-            let place = column as usize;
-            self.samples[3 * place..3 * place + 3].copy_from_slice(&color);
-            if let Some(decisions) = &mut self.decisions {
-                decisions[place] = decision;
-            }
-            self.in_doubt.count(rung);
-        }
     }
 }
 

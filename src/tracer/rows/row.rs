@@ -1,0 +1,97 @@
+//! A row that is being written, and what is remembered of it for the next frame.
+
+use fearless_simd::{Level, dispatch};
+
+use super::lanes;
+use crate::tracer::InDoubt;
+use crate::tracer::decision::Decision;
+use crate::tracer::ladder::Pixels;
+
+/// The columns of a row that were last given one colour.
+#[derive(Default)]
+pub(in crate::tracer) struct Memory {
+    filled: Vec<(Columns, [u32; 3])>,
+    /// The same of the frame that is being traced.
+    next: Vec<(Columns, [u32; 3])>,
+}
+
+impl Memory {
+    /// Forgets the row, which others may have written.
+    pub(in crate::tracer) fn clear(&mut self) {
+        self.filled.clear();
+    }
+}
+
+/// A row that is being written.
+pub(super) struct Row<'r> {
+    pub(super) level: Level,
+    pub(super) number: u32,
+    /// Y.
+    pub(super) y: f64,
+    pub(super) samples: &'r mut [f32],
+    pub(super) decisions: Option<&'r mut [Decision]>,
+    /// What the samples are from the frame before, where only what differs is to be written.
+    pub(super) memory: Option<&'r mut Memory>,
+    pub(super) in_doubt: InDoubt,
+}
+
+/// Columns, from the first to before the last.
+pub(super) type Columns = (u32, u32);
+
+impl Row<'_> {
+    /// The same samples in all columns.
+    pub(super) fn fill(&mut self, (from, to): Columns, decision: Decision, color: [f32; 3]) {
+        if let Some(decisions) = &mut self.decisions {
+            decisions[from as usize..to as usize].fill(decision);
+        }
+        let Some(memory) = self.memory.take() else {
+            return self.write((from, to), color);
+        };
+        let bits = color.map(f32::to_bits);
+        match memory.next.last_mut() {
+            Some((columns, same)) if columns.1 == from && *same == bits => columns.1 = to,
+            _ => memory.next.push(((from, to), bits)),
+        }
+        // What lies between runs that had this colour already.
+        let mut begin = from;
+        for &((first, end), before) in &memory.filled {
+            if before == bits && first < to && end > begin {
+                if first > begin {
+                    self.write((begin, first), color);
+                }
+                begin = end;
+            }
+        }
+        if begin < to {
+            self.write((begin, to), color);
+        }
+        self.memory = Some(memory);
+    }
+
+    fn write(&mut self, (from, to): Columns, color: [f32; 3]) {
+        let samples = &mut self.samples[3 * from as usize..3 * to as usize];
+        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
+    }
+
+    /// The row is written.
+    pub(super) fn finish(self) -> InDoubt {
+        if let Some(memory) = self.memory {
+            std::mem::swap(&mut memory.filled, &mut memory.next);
+            memory.next.clear();
+        }
+        self.in_doubt
+    }
+
+    /// Asks for each pixel by itself.
+    pub(super) fn ask(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &impl Pixels) {
+        for column in columns {
+            let ((decision, color), rung) = pixels.pixel(column, self.number);
+            let place = column as usize;
+            self.samples[3 * place..3 * place + 3].copy_from_slice(&color);
+            if let Some(decisions) = &mut self.decisions {
+                decisions[place] = decision;
+            }
+            self.in_doubt.count(rung);
+        }
+    }
+}
