@@ -41,7 +41,7 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
-use lanes::{Run, Shade};
+use lanes::{Paint, Run, Shade};
 pub(super) use row::Memory;
 use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
@@ -56,7 +56,7 @@ pub(super) struct Rows<'a, P> {
     level: Level,
     direct: Solids,
     floor: Option<Floor>,
-    background: [f32; 3],
+    background: Paint,
     stage: Stage,
     precision: Precision,
 }
@@ -80,8 +80,8 @@ struct Floor {
     mirrored: Option<Solids>,
     /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its error.
     depth: [f64; 3],
-    color: [f32; 3],
-    in_shadow: [f32; 3],
+    paint: Paint,
+    in_shadow: Paint,
 }
 
 /// What the tracing of a row needs, kept for the next.
@@ -97,6 +97,8 @@ pub(super) struct Scratch {
     shadows: Vec<Span>,
     shadow_cuts: Vec<u32>,
     doubts: Vec<u32>,
+    /// The casters in reach of a run.
+    in_reach: Vec<usize>,
 }
 
 #[derive(Default)]
@@ -145,7 +147,7 @@ impl<'a, P: Lines> Rows<'a, P> {
             level,
             direct: Solids::new(picture, &picture.view, false, &color, screen),
             floor,
-            background: color(Decision::Background),
+            background: Paint::new(color(Decision::Background)),
             stage: picture.stage,
             precision,
         }
@@ -177,7 +179,7 @@ impl<'a, P: Lines> Rows<'a, P> {
             for columns in [(0, middle), (middle, screen.size)] {
                 if columns.0 < columns.1 {
                     let decision = Decision::Quadrant(quadrant(columns.0, number, screen.size));
-                    row.fill(columns, decision, self.pixels.color(decision));
+                    row.fill(columns, decision, &Paint::new(self.pixels.color(decision)));
                 }
             }
             return row.finish();
@@ -232,7 +234,7 @@ impl<'a, P: Lines> Rows<'a, P> {
             Front::Solid(solid) => self.solid(row, scratch, &self.direct, solid, columns),
             Front::Rest => match floor {
                 Some(floor) => self.surface(row, scratch, columns, floor),
-                None => row.fill(columns, Decision::Background, self.background),
+                None => row.fill(columns, Decision::Background, &self.background),
             },
             Front::Unknown => match halves(columns) {
                 Some(halves) => {
@@ -304,14 +306,20 @@ impl<'a, P: Lines> Rows<'a, P> {
         match &solid.body {
             Body::Flat => {
                 let decision = view.decision(solid.index, None, false);
-                row.fill(columns, decision, solid.color);
+                row.fill(columns, decision, &solid.paint);
             }
             Body::Ball(ball, casters) => {
+                let last = self.screen.place(columns.1 - 1);
+                let stretch = ball.stretch(row.y, (self.screen.place(columns.0), last));
+                let near = |&caster: &usize| !casters[caster].misses(&stretch);
+                scratch.in_reach.clear();
+                scratch.in_reach.extend((0..casters.len()).filter(near));
                 let shade = Shade {
                     ball,
                     casters,
+                    in_reach: &scratch.in_reach,
                     shadows: view.shadows,
-                    color_in_shadow: solid.color,
+                    in_shadow: &solid.paint,
                 };
                 let both = [false, true].map(|dark| view.decision(solid.index, None, dark));
                 let range = columns.0 as usize..columns.1 as usize;
@@ -368,9 +376,13 @@ impl<'a, P: Lines> Rows<'a, P> {
         columns: Columns,
     ) {
         let show = |row: &mut Row<'_>, columns, in_shadow: bool| {
-            let color = if in_shadow { solid.color } else { facet.color };
+            let paint = if in_shadow {
+                &solid.paint
+            } else {
+                &facet.paint
+            };
             let decision = view.decision(solid.index, Some(facet.face), in_shadow);
-            row.fill(columns, decision, color);
+            row.fill(columns, decision, paint);
         };
         if facet.turned_away || facet.shadows.is_empty() {
             return show(row, columns, facet.turned_away);
@@ -416,12 +428,12 @@ impl<'a, P: Lines> Rows<'a, P> {
             .map(|ends| (ends[0].max(columns.0), ends[1].min(columns.1)));
         for columns in runs.filter(|(from, to)| from < to) {
             match any(&scratch.floor_shadows, columns.0) {
-                Some(true) => row.fill(columns, Decision::SurfaceInShadow, floor.in_shadow),
+                Some(true) => row.fill(columns, Decision::SurfaceInShadow, &floor.in_shadow),
                 Some(false) if crossed.meet(columns.0) => match &floor.mirrored {
                     Some(mirrored) => {
                         self.reflection(row, scratch, columns, &crossed.met, (floor, mirrored));
                     }
-                    None => row.fill(columns, Decision::Surface, floor.color),
+                    None => row.fill(columns, Decision::Surface, &floor.paint),
                 },
                 _ => row.ask(columns.0..columns.1, self.pixels),
             }
@@ -448,7 +460,7 @@ impl<'a, P: Lines> Rows<'a, P> {
         }
         match self.front(mirrored, met, None, row.y, columns) {
             Front::Solid(solid) => self.solid(row, scratch, mirrored, solid, columns),
-            Front::Rest => row.fill(columns, Decision::Surface, floor.color),
+            Front::Rest => row.fill(columns, Decision::Surface, &floor.paint),
             Front::Unknown => match halves(columns) {
                 Some(halves) => {
                     for half in halves {
@@ -507,8 +519,8 @@ impl Floor {
                 third.value(),
                 (height.error() + 8.0 * U * magnitude) * MORE,
             ],
-            color: color(Decision::Surface),
-            in_shadow: color(Decision::SurfaceInShadow),
+            paint: Paint::new(color(Decision::Surface)),
+            in_shadow: Paint::new(color(Decision::SurfaceInShadow)),
         }
     }
 

@@ -44,6 +44,35 @@ impl Form {
     pub(super) fn of_row(&self, m: f64) -> f64 {
         self.constant + self.off * m
     }
+
+    /// The least and the most that f64 computes of it along a stretch. It takes the same operations as in a pixel, and rounding
+    /// keeps order: where a term is less it is not more rounded, and so are sums. So this needs no bound of its own.
+    pub(super) fn along(&self, stretch: &Stretch) -> (f64, f64) {
+        let ends = |factor: f64, (low, high): (f64, f64)| {
+            let (a, b) = (low * factor, high * factor);
+            (a.min(b), a.max(b))
+        };
+        let row = self.of_row(stretch.m);
+        let across = ends(self.across, stretch.q);
+        let out = ends(self.out, stretch.s);
+        (row + across.0 + out.0, row + across.1 + out.1)
+    }
+
+    /// Whether it is certainly less than 0 in every pixel of a stretch.
+    pub(super) fn is_negative_along(&self, stretch: &Stretch) -> bool {
+        self.along(stretch).1 < -self.largest_error()
+    }
+
+    fn largest_error(&self) -> f64 {
+        self.errors.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Neighbouring pixels of a sphere in a row: its m, and between which q and which s they are, as f64 computes them.
+pub(super) struct Stretch {
+    m: f64,
+    q: (f64, f64),
+    s: (f64, f64),
 }
 
 /// What is known about q, m and s of any pixel: a bound on their magnitudes, and on their errors.
@@ -201,6 +230,24 @@ impl Ball {
                 channel(color.y, green),
                 channel(color.z, blue),
             ],
+        }
+    }
+
+    /// The pixels from X = `first` to `last` of the row at Y.
+    pub(super) fn stretch(&self, y: f64, (first, last): (f64, f64)) -> Stretch {
+        let m = self.off.at(y);
+        let q = (first - self.center, last - self.center);
+        let s = |q: f64| ((self.squared_radius - m * m) - q * q).max(0.0).sqrt();
+        let (a, b) = (s(q.0), s(q.1));
+        let most = if q.0 < 0.0 && q.1 > 0.0 {
+            s(0.0)
+        } else {
+            a.max(b)
+        };
+        Stretch {
+            m,
+            q,
+            s: (a.min(b), most),
         }
     }
 

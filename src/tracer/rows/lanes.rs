@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4};
 
-use super::ball::{Ball, Form, ZONES};
+use super::ball::{Ball, Form, Stretch, ZONES};
 use super::shape::{MORE, Screen, U};
 use crate::number::Bounded;
 use crate::tracer::decision::Decision;
@@ -31,9 +31,11 @@ pub(super) struct Passing {
 pub(super) struct Shade<'a> {
     pub(super) ball: &'a Ball,
     pub(super) casters: &'a [Caster],
+    /// Those of them that can throw a shadow on any pixel of the run.
+    pub(super) in_reach: &'a [usize],
     /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
     pub(super) shadows: bool,
-    pub(super) color_in_shadow: [f32; 3],
+    pub(super) in_shadow: &'a Paint,
 }
 
 /// The pixels of a run: where they are, and where they go.
@@ -102,9 +104,7 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
         let all = u64::MAX >> (64 - here);
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
-            for pixel in samples.chunks_exact_mut(3) {
-                pixel.copy_from_slice(&shade.color_in_shadow);
-            }
+            fill(simd, samples, shade.in_shadow);
         } else {
             let (low_lower, low_upper) = lit(simd, shade, m, &low);
             let (high_lower, high_upper) = lit(simd, shade, m, &high);
@@ -115,7 +115,7 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
                 let upper = low_upper[i].narrow(high_upper[i]);
                 known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
                 // + 0 turns −0 into +0.
-                let shadow = S::f32s::splat(simd, shade.color_in_shadow[i]);
+                let shadow = S::f32s::splat(simd, shade.in_shadow.0[i]);
                 channels[i] = dark.select(shadow, upper + zero);
             }
             let [red, green, blue] = &channels;
@@ -164,8 +164,8 @@ fn hits<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Hits<S::f64s> {
         let error = ball.light.errors[zone];
         in_shadow = light.simd_lt(-error);
         let mut settled = in_shadow | light.simd_gt(error);
-        for caster in shade.casters {
-            let (inside, outside) = shadowed(simd, caster, zone, m, q, s);
+        for &caster in shade.in_reach {
+            let (inside, outside) = shadowed(simd, &shade.casters[caster], zone, m, q, s);
             in_shadow |= inside;
             settled &= inside | outside;
         }
@@ -275,6 +275,27 @@ fn shadowed<S: Simd>(
 }
 
 impl Caster {
+    /// Whether it certainly throws no shadow on a stretch.
+    pub(super) fn misses(&self, stretch: &Stretch) -> bool {
+        match self {
+            Caster::Cell(forms) => forms.iter().any(|form| form.is_negative_along(stretch)),
+            Caster::Ball(passing) => {
+                let least_square = |form: &Form| {
+                    let (low, high) = form.along(stretch);
+                    if low <= 0.0 && high >= 0.0 {
+                        0.0
+                    } else {
+                        (low * low).min(high * high)
+                    }
+                };
+                let [x, y, z] = &passing.moment;
+                let most = passing.reach - (least_square(x) + least_square(y) + least_square(z));
+                let error = passing.errors.iter().copied().fold(0.0, f64::max);
+                most < -error || passing.before.is_negative_along(stretch)
+            }
+        }
+    }
+
     /// A sphere, `reach` being |l|² R².
     pub(super) fn ball(before: Form, moment: [Form; 3], reach: Bounded) -> Caster {
         let magnitudes: f64 = moment
@@ -298,25 +319,55 @@ impl Caster {
     }
 }
 
-/// The same pixel again and again.
-#[inline(always)]
-pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], [red, green, blue]: [f32; 3]) {
-    // Three vectors hold a whole number of pixels, of any width.
-    let width = S::f32s::LEN;
-    let mut pattern = [0.0; 3 * 16];
-    for pixel in pattern.chunks_exact_mut(3) {
-        pixel.copy_from_slice(&[red, green, blue]);
+/// A colour, as it lies in memory: the same pixel again and again.
+#[derive(Clone)]
+pub(super) struct Paint([f32; Paint::LENGTH]);
+
+impl Paint {
+    /// Three vectors hold a whole number of pixels, of any width up to this third.
+    const LENGTH: usize = 3 * 16;
+
+    pub(super) fn new(color: [f32; 3]) -> Paint {
+        Paint(std::array::from_fn(|i| color[i % 3]))
     }
-    let first = S::f32s::from_slice(simd, &pattern[..width]);
-    let second = S::f32s::from_slice(simd, &pattern[width..2 * width]);
-    let third = S::f32s::from_slice(simd, &pattern[2 * width..3 * width]);
-    let mut blocks = samples.chunks_exact_mut(3 * width);
-    for block in &mut blocks {
+
+    pub(super) fn color(&self) -> [f32; 3] {
+        [self.0[0], self.0[1], self.0[2]]
+    }
+}
+
+/// Fills samples with a colour.
+#[inline(always)]
+pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
+    if samples.len() >= 3 * S::f32s::LEN {
+        fill_by::<S, S::f32s>(simd, samples, paint);
+    } else if samples.len() >= 3 * 4 {
+        fill_by::<S, f32x4<S>>(simd, samples, paint);
+    } else {
+        for (sample, color) in samples.iter_mut().zip(&paint.0) {
+            *sample = *color;
+        }
+    }
+}
+
+/// Fills no fewer samples than three vectors hold.
+#[inline(always)]
+fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
+    let width = V::LEN;
+    let first = V::from_slice(simd, &paint.0[..width]);
+    let second = V::from_slice(simd, &paint.0[width..2 * width]);
+    let third = V::from_slice(simd, &paint.0[2 * width..3 * width]);
+    let last = samples.len() - 3 * width;
+    let mut at = 0;
+    loop {
+        let block = &mut samples[at..at + 3 * width];
         first.store_slice(&mut block[..width]);
         second.store_slice(&mut block[width..2 * width]);
         third.store_slice(&mut block[2 * width..]);
+        if at == last {
+            return;
+        }
+        // The last block may lie on part of the one before it.
+        at = (at + 3 * width).min(last);
     }
-    let rest = blocks.into_remainder();
-    let length = rest.len();
-    rest.copy_from_slice(&pattern[..length]);
 }

@@ -78,7 +78,7 @@ fn put<S: Simd>(
 ) {
     let here = S::f32s::LEN.min(run.samples.len() / 3 - *first);
     let dark = S::mask32s::from_bitmask(simd, in_shadow);
-    for (channel, &shadow) in channels.iter_mut().zip(&shade.color_in_shadow) {
+    for (channel, &shadow) in channels.iter_mut().zip(&shade.in_shadow.color()) {
         *channel = dark.select(S::f32s::splat(simd, shadow), *channel + 0.0);
     }
     let samples = &mut run.samples[3 * *first..3 * (*first + here)];
@@ -110,8 +110,8 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     let mut in_shadow = V::Mask::splat(simd, false);
     if shade.shadows {
         in_shadow = light.simd_le(zero);
-        for caster in shade.casters {
-            in_shadow |= shadowed::<S, V>(simd, caster, m, q, s);
+        for &caster in shade.in_reach {
+            in_shadow |= shadowed::<S, V>(simd, &shade.casters[caster], m, q, s);
         }
     }
     light = light.max(zero);

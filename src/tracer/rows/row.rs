@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::lanes;
+use super::lanes::{self, Paint};
 use crate::tracer::InDoubt;
 use crate::tracer::decision::Decision;
 use crate::tracer::ladder::Pixels;
@@ -39,15 +39,15 @@ pub(super) struct Row<'r> {
 pub(super) type Columns = (u32, u32);
 
 impl Row<'_> {
-    /// The same samples in all columns.
-    pub(super) fn fill(&mut self, (from, to): Columns, decision: Decision, color: [f32; 3]) {
+    /// One colour in all columns.
+    pub(super) fn fill(&mut self, (from, to): Columns, decision: Decision, paint: &Paint) {
         if let Some(decisions) = &mut self.decisions {
             decisions[from as usize..to as usize].fill(decision);
         }
         let Some(memory) = self.memory.take() else {
-            return self.write((from, to), color);
+            return self.write((from, to), paint);
         };
-        let bits = color.map(f32::to_bits);
+        let bits = paint.color().map(f32::to_bits);
         match memory.next.last_mut() {
             Some((columns, same)) if columns.1 == from && *same == bits => columns.1 = to,
             _ => memory.next.push(((from, to), bits)),
@@ -57,20 +57,20 @@ impl Row<'_> {
         for &((first, end), before) in &memory.filled {
             if before == bits && first < to && end > begin {
                 if first > begin {
-                    self.write((begin, first), color);
+                    self.write((begin, first), paint);
                 }
                 begin = end;
             }
         }
         if begin < to {
-            self.write((begin, to), color);
+            self.write((begin, to), paint);
         }
         self.memory = Some(memory);
     }
 
-    fn write(&mut self, (from, to): Columns, color: [f32; 3]) {
+    fn write(&mut self, (from, to): Columns, paint: &Paint) {
         let samples = &mut self.samples[3 * from as usize..3 * to as usize];
-        dispatch!(self.level, simd => lanes::fill(simd, samples, color));
+        dispatch!(self.level, simd => lanes::fill(simd, samples, paint));
     }
 
     /// The row is written.

@@ -1,7 +1,7 @@
 //! The solids as a frame's rows cross them: seen directly, or in the mirror.
 
 use super::ball::Ball;
-use super::lanes::Caster;
+use super::lanes::{Caster, Paint};
 use super::shape::{Ellipse, HalfPlane, MORE, Screen, Shape, Sheet, U};
 use super::span::Span;
 use crate::number::{Bounded, Real};
@@ -30,7 +30,7 @@ pub(super) struct Solid {
     depth: Depth,
     pub(super) body: Body,
     /// Its colour in shadow; of a flat sphere, its colour.
-    pub(super) color: [f32; 3],
+    pub(super) paint: Paint,
 }
 
 /// How its pixels are coloured.
@@ -48,7 +48,7 @@ pub(super) struct Facet {
     pub(super) face: u8,
     /// Whether it is in shadow where nothing else throws one.
     pub(super) turned_away: bool,
-    pub(super) color: [f32; 3],
+    pub(super) paint: Paint,
     pub(super) shadows: Vec<Shape>,
 }
 
@@ -123,14 +123,14 @@ impl Solids {
                 let depth = depth_of_ball(sphere.center, &ellipse, sphere.support, screen);
                 let outline = Shape::new(Vec::new(), Some(ellipse), screen);
                 let in_shadow = all.shadows;
-                let color = color(all.decision(index as u16, None, in_shadow));
+                let paint = Paint::new(color(all.decision(index as u16, None, in_shadow)));
                 all.solids.push(Solid {
                     index: index as u16,
                     side: facts.sides[index],
                     outline,
                     depth,
                     body,
-                    color,
+                    paint,
                 });
             }
         }
@@ -164,7 +164,11 @@ impl Solids {
                     facets.push(Facet {
                         face: face as u8,
                         turned_away,
-                        color: color(all.decision(index as u16, Some(face as u8), false)),
+                        paint: Paint::new(color(all.decision(
+                            index as u16,
+                            Some(face as u8),
+                            false,
+                        ))),
                         shadows,
                     });
                 }
@@ -190,7 +194,7 @@ impl Solids {
                     outline,
                     depth: Depth::Facets(depths),
                     body,
-                    color: color(all.decision(index as u16, Some(0), all.shadows)),
+                    paint: Paint::new(color(all.decision(index as u16, Some(0), all.shadows))),
                 });
             }
         }
