@@ -332,13 +332,12 @@ impl Tracer {
     ) -> (String, Rung) {
         let size = pixels.bounded().size as usize;
         let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
-        Rows::new(pixels, precision, self.simd.0).trace(
-            row,
-            &mut samples,
-            Some(&mut decisions),
-            None,
-            &mut Scratch::default(),
+        let (rows, mut scratch) = (
+            Rows::new(pixels, precision, self.simd.0),
+            Scratch::default(),
         );
+        rows.begin(&mut scratch);
+        rows.trace(row, &mut samples, Some(&mut decisions), None, &mut scratch);
         let place = column as usize;
         let color = std::array::from_fn(|channel| samples[3 * place + channel]);
         let text = pixels.explain(column, row, (decisions[place], color));
@@ -408,7 +407,12 @@ impl Tracer {
 
     fn trace_rows(&self, pixels: &impl Lines, precision: Precision, target: Target<'_>) -> InDoubt {
         let rows = Rows::new(pixels, precision, self.simd.0);
-        self.each_row(target, Scratch::default, |number, row, scratch| {
+        let scratch = || {
+            let mut scratch = Scratch::default();
+            rows.begin(&mut scratch);
+            scratch
+        };
+        self.each_row(target, scratch, |number, row, scratch| {
             let memory = row.memory.and_then(<[Memory]>::first_mut);
             rows.trace(number, row.samples, row.decisions, memory, scratch)
         })

@@ -30,8 +30,9 @@ mod row;
 mod shape;
 mod solids;
 mod span;
+mod sweep;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 use super::InDoubt;
 use super::decision::Decision;
@@ -41,12 +42,12 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
-use lanes::{Paint, Run, Shade};
+use lanes::{Paint, Shading};
 pub(super) use row::Memory;
 use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
-use solids::{Body, Facet, Pair, Solid, Solids};
-use span::Span;
+use solids::{Body, Facet, Pair, ShadedBall, Solid, Solids};
+use sweep::{Border, Borders, Column, Sweep};
 
 /// A frame, ready to be traced row by row.
 pub(super) struct Rows<'a, P> {
@@ -54,10 +55,12 @@ pub(super) struct Rows<'a, P> {
     pixels: &'a P,
     screen: Screen,
     level: Level,
+    borders: Borders,
     direct: Solids,
     floor: Option<Floor>,
     background: Paint,
-    stage: Stage,
+    /// The picture of code 2-1, where that is the stage.
+    quadrants: Option<[Paint; 4]>,
     precision: Precision,
 }
 
@@ -74,9 +77,6 @@ pub(super) enum Precision {
 
 /// The surface.
 struct Floor {
-    outline: Shape,
-    /// Of each solid.
-    shadows: Vec<Shape>,
     mirrored: Option<Solids>,
     /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its error.
     depth: [f64; 3],
@@ -87,40 +87,8 @@ struct Floor {
 /// What the tracing of a row needs, kept for the next.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// The solids that the row crosses, and where it is cut for them and the surface.
-    direct: Crossed,
-    /// The mirrored solids that it crosses, and where it is cut for them and the shadows on the surface.
-    mirrored: Crossed,
-    floor_shadows: Vec<Span>,
-    /// Where a tetrahedron's run is cut between its faces, and a face's for the shadows on it.
-    cuts: Vec<u32>,
-    shadows: Vec<Span>,
-    shadow_cuts: Vec<u32>,
-    doubts: Vec<u32>,
-    /// The casters in reach of a run.
-    in_reach: Vec<usize>,
-}
-
-#[derive(Default)]
-struct Crossed {
-    spans: Vec<(usize, Span)>,
-    cuts: Vec<u32>,
-    met: Vec<usize>,
-}
-
-impl Crossed {
-    /// Whether it is known which of the solids a column meets; they are then in `met`.
-    fn meet(&mut self, column: u32) -> bool {
-        self.met.clear();
-        for (solid, span) in &self.spans {
-            match span.holds(column) {
-                Some(true) => self.met.push(*solid),
-                Some(false) => {}
-                None => return false,
-            }
-        }
-        true
-    }
+    sweep: Sweep,
+    shading: Shading,
 }
 
 /// What is in front of all else in some columns.
@@ -131,30 +99,73 @@ enum Front {
     Unknown,
 }
 
+/// What some columns show.
+#[derive(Clone, Copy)]
+enum Show<'f> {
+    Paint(&'f Paint),
+    Ball(&'f ShadedBall),
+    /// It is not known: each is to be asked for.
+    Unknown,
+}
+
+impl Show<'_> {
+    fn is(&self, other: &Show<'_>) -> bool {
+        match (self, other) {
+            (Show::Paint(a), Show::Paint(b)) => std::ptr::eq(*a, *b),
+            (Show::Ball(a), Show::Ball(b)) => std::ptr::eq(*a, *b),
+            (Show::Unknown, Show::Unknown) => true,
+            _ => false,
+        }
+    }
+}
+
+/// Columns that show the same, as far as the sweep has come.
+struct Stretch<'f> {
+    columns: Columns,
+    shows: Show<'f>,
+}
+
+/// A row on its way: what is written, and what is about to be.
+struct Progress<'r, 'f, 's> {
+    row: Row<'r>,
+    stretch: Option<Stretch<'f>>,
+    shading: &'s mut Shading,
+}
+
 impl<'a, P: Lines> Rows<'a, P> {
     /// The frame that `pixels` are of.
     pub(super) fn new(pixels: &'a P, precision: Precision, level: Level) -> Self {
         let picture = pixels.bounded();
         let screen = Screen::new(picture.size);
         let color = |decision| pixels.color(decision);
+        let paint = |decision| Paint::new(decision, pixels.color(decision));
+        let mut borders = Borders::default();
+        let is_quadrants = picture.stage == Stage::Image;
         let floor = picture
             .floor
             .as_ref()
-            .map(|floor| Floor::new(picture, floor, &color, screen));
+            .map(|floor| Floor::new(picture, floor, &color, screen, &mut borders));
         Rows {
             pixels,
             screen,
             level,
-            direct: Solids::new(picture, &picture.view, false, &color, screen),
+            direct: Solids::new(picture, &picture.view, false, &color, screen, &mut borders),
             floor,
-            background: Paint::new(color(Decision::Background)),
-            stage: picture.stage,
+            borders,
+            background: paint(Decision::Background),
+            quadrants: is_quadrants
+                .then(|| [0, 1, 2, 3].map(|number| paint(Decision::Quadrant(number)))),
             precision,
         }
     }
 
+    /// What tracing rows of this frame needs.
+    pub(super) fn begin(&self, scratch: &mut Scratch) {
+        scratch.sweep.begin(&self.borders);
+    }
+
     /// Traces a row into its samples, and its decisions where they are asked for. How many pixels double-doubles and arbitrary
-    /// precision had to settle. With a `memory` of the row, which holds for `samples`, only what differs is written.
+    /// precision had to settle. `scratch` is prepared for the frame. With a `memory` of the row, which holds for `samples`, only what differs is written.
     pub(super) fn trace(
         &self,
         number: u32,
@@ -164,85 +175,104 @@ impl<'a, P: Lines> Rows<'a, P> {
         scratch: &mut Scratch,
     ) -> InDoubt {
         let screen = self.screen;
-        let mut row = Row {
-            level: self.level,
-            number,
-            y: screen.place(number),
-            samples,
-            decisions,
-            memory,
-            in_doubt: InDoubt::default(),
+        let mut progress = Progress {
+            row: Row {
+                level: self.level,
+                number,
+                y: screen.place(number),
+                samples,
+                decisions,
+                memory,
+                in_doubt: InDoubt::default(),
+            },
+            stretch: None,
+            shading: &mut scratch.shading,
         };
-        if self.stage == Stage::Image {
+        if let Some(quadrants) = &self.quadrants {
             // Code 2-1 knows two kinds of column.
             let middle = (screen.size / 2 + 1).min(screen.size);
             for columns in [(0, middle), (middle, screen.size)] {
                 if columns.0 < columns.1 {
-                    let decision = Decision::Quadrant(quadrant(columns.0, number, screen.size));
-                    row.fill(columns, decision, &Paint::new(self.pixels.color(decision)));
+                    let paint = &quadrants[usize::from(quadrant(columns.0, number, screen.size))];
+                    progress.row.fill(columns, paint);
                 }
             }
-            return row.finish();
+            return progress.row.finish();
         }
-        let mut crossed = std::mem::take(&mut scratch.direct);
-        self.direct.cross(number, screen, &mut crossed.spans);
-        let on_floor = match &self.floor {
-            Some(floor) => floor.outline.cross(number, screen),
-            None => Span::NONE,
+        let sweep = &mut scratch.sweep;
+        sweep.enter(number, &self.borders, self.level, screen);
+        let mut from = 0;
+        for crossing in 0..sweep.len() {
+            let to = sweep.place(crossing);
+            if to > from {
+                self.column(&mut progress, &sweep.column, (from, to));
+                from = to;
+            }
+            sweep.pass(crossing, &self.borders);
+        }
+        if from < screen.size {
+            self.column(&mut progress, &sweep.column, (from, screen.size));
+        }
+        self.write(&mut progress);
+        progress.row.finish()
+    }
+
+    /// Columns between two crossings, of which `column` is one.
+    fn column<'f>(
+        &'f self,
+        progress: &mut Progress<'_, 'f, '_>,
+        column: &Column,
+        columns: Columns,
+    ) {
+        let Some(met) = column.direct.known() else {
+            return self.show(progress, columns, Show::Unknown);
         };
-        let spans = crossed.spans.iter().map(|(_, span)| span);
-        cut(
-            (0, screen.size),
-            spans.chain([&on_floor]),
-            &mut crossed.cuts,
-        );
-        // Of the mirrored solids and the shadows on the surface nothing is known before it is seen.
-        scratch.mirrored.cuts.clear();
-        let cuts = std::mem::take(&mut crossed.cuts);
-        for columns in cuts.windows(2).map(|ends| (ends[0], ends[1])) {
-            let known = crossed.meet(columns.0);
-            let hidden = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
-            let on_floor = match on_floor.holds(columns.0) {
-                // What is above the surface hides it.
-                _ if crossed.met.iter().any(hidden) => Some(false),
-                held => held,
-            };
-            match on_floor.filter(|_| known) {
-                Some(on_floor) => {
-                    let floor = self.floor.as_ref().filter(|_| on_floor);
-                    self.first(&mut row, scratch, columns, &crossed.met, floor);
-                }
-                None => row.ask(columns.0..columns.1, self.pixels),
+        // What is above the surface hides it.
+        let hidden = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
+        let on_floor = if met.iter().any(hidden) {
+            Some(false)
+        } else {
+            column.surface()
+        };
+        match on_floor {
+            Some(on_floor) => {
+                let floor = self.floor.as_ref().filter(|_| on_floor);
+                self.first(progress, column, columns, met, floor);
             }
+            None => self.show(progress, columns, Show::Unknown),
         }
-        crossed.cuts = cuts;
-        scratch.direct = crossed;
-        row.finish()
     }
 
     /// Columns that all meet the same solids, and the surface where it is given.
-    fn first(
-        &self,
-        row: &mut Row<'_>,
-        scratch: &mut Scratch,
+    fn first<'f>(
+        &'f self,
+        progress: &mut Progress<'_, 'f, '_>,
+        column: &Column,
         columns: Columns,
         met: &[usize],
-        floor: Option<&Floor>,
+        floor: Option<&'f Floor>,
     ) {
-        let surface = floor.map(|floor| floor.depth_at(row.y));
-        match self.front(&self.direct, met, surface, row.y, columns) {
-            Front::Solid(solid) => self.solid(row, scratch, &self.direct, solid, columns),
+        let y = progress.row.y;
+        let surface = floor.map(|floor| floor.depth_at(y));
+        match self.front(&self.direct, met, surface, y, columns) {
+            Front::Solid(solid) => {
+                self.show(
+                    progress,
+                    columns,
+                    solid_in(&self.direct.solids[solid], column),
+                );
+            }
             Front::Rest => match floor {
-                Some(floor) => self.surface(row, scratch, columns, floor),
-                None => row.fill(columns, Decision::Background, &self.background),
+                Some(floor) => self.surface(progress, column, columns, floor),
+                None => self.show(progress, columns, Show::Paint(&self.background)),
             },
             Front::Unknown => match halves(columns) {
                 Some(halves) => {
                     for half in halves {
-                        self.first(row, scratch, half, met, floor);
+                        self.first(progress, column, half, met, floor);
                     }
                 }
-                None => row.ask(columns.0..columns.1, self.pixels),
+                None => self.show(progress, columns, Show::Unknown),
             },
         }
     }
@@ -293,184 +323,130 @@ impl<'a, P: Lines> Rows<'a, P> {
         }
     }
 
-    /// Columns that show a solid.
-    fn solid(
-        &self,
-        row: &mut Row<'_>,
-        scratch: &mut Scratch,
-        view: &Solids,
-        solid: usize,
-        columns: Columns,
-    ) {
-        let solid = &view.solids[solid];
-        match &solid.body {
-            Body::Flat => {
-                let decision = view.decision(solid.index, None, false);
-                row.fill(columns, decision, &solid.paint);
-            }
-            Body::Ball(ball, casters) => {
-                let last = self.screen.place(columns.1 - 1);
-                let stretch = ball.stretch(row.y, (self.screen.place(columns.0), last));
-                let near = |&caster: &usize| !casters[caster].misses(&stretch);
-                scratch.in_reach.clear();
-                scratch.in_reach.extend((0..casters.len()).filter(near));
-                let shade = Shade {
-                    ball,
-                    casters,
-                    in_reach: &scratch.in_reach,
-                    shadows: view.shadows,
-                    in_shadow: &solid.paint,
-                };
-                let both = [false, true].map(|dark| view.decision(solid.index, None, dark));
-                let range = columns.0 as usize..columns.1 as usize;
-                let mut run = Run {
-                    screen: self.screen,
-                    y: row.y,
-                    from: columns.0,
-                    samples: &mut row.samples[3 * range.start..3 * range.end],
-                    decisions: row.decisions.as_mut().map(|all| (&mut all[range], both)),
-                    doubts: &mut scratch.doubts,
-                };
-                match self.precision {
-                    Precision::Bounded => {
-                        dispatch!(self.level, simd => lanes::shade(simd, &shade, &mut run));
-                        row.ask(scratch.doubts.drain(..), self.pixels);
-                    }
-                    Precision::Double => {
-                        dispatch!(self.level, simd => plain::shade_in_double(simd, &shade, &mut run));
-                    }
-                    Precision::Single => {
-                        dispatch!(self.level, simd => plain::shade_in_single(simd, &shade, &mut run));
-                    }
-                }
-            }
-            Body::Facets(facets, pairs) => {
-                let mut cuts = std::mem::take(&mut scratch.cuts);
-                // Eye rays enter at most three faces.
-                let mut lines = [Span::NONE; 3];
-                for (line, pair) in lines.iter_mut().zip(pairs) {
-                    *line = pair.first.cross(row.y, self.screen).span(self.screen.size);
-                }
-                cut(columns, lines.iter(), &mut cuts);
-                for columns in cuts.windows(2).map(|ends| (ends[0], ends[1])) {
-                    match last_entered(pairs, &lines, columns.0) {
-                        Some(last) => {
-                            self.facet(row, scratch, view, (solid, &facets[last]), columns);
-                        }
-                        None => row.ask(columns.0..columns.1, self.pixels),
-                    }
-                }
-                scratch.cuts = cuts;
-            }
-            Body::Unknown => row.ask(columns.0..columns.1, self.pixels),
-        }
-    }
-
-    /// Columns that show a face.
-    fn facet(
-        &self,
-        row: &mut Row<'_>,
-        scratch: &mut Scratch,
-        view: &Solids,
-        (solid, facet): (&Solid, &Facet),
-        columns: Columns,
-    ) {
-        let show = |row: &mut Row<'_>, columns, in_shadow: bool| {
-            let paint = if in_shadow {
-                &solid.paint
-            } else {
-                &facet.paint
-            };
-            let decision = view.decision(solid.index, Some(facet.face), in_shadow);
-            row.fill(columns, decision, paint);
-        };
-        if facet.turned_away || facet.shadows.is_empty() {
-            return show(row, columns, facet.turned_away);
-        }
-        scratch.shadows.clear();
-        scratch.shadows.extend(
-            facet
-                .shadows
-                .iter()
-                .map(|shadow| shadow.cross(row.number, self.screen)),
-        );
-        cut(columns, scratch.shadows.iter(), &mut scratch.shadow_cuts);
-        for ends in scratch.shadow_cuts.windows(2) {
-            let columns = (ends[0], ends[1]);
-            match any(&scratch.shadows, columns.0) {
-                Some(in_shadow) => show(row, columns, in_shadow),
-                None => row.ask(columns.0..columns.1, self.pixels),
-            }
-        }
-    }
-
     /// Columns that show the surface.
-    fn surface(&self, row: &mut Row<'_>, scratch: &mut Scratch, columns: Columns, floor: &Floor) {
-        let mut crossed = std::mem::take(&mut scratch.mirrored);
-        if crossed.cuts.is_empty() {
-            let shadows = floor
-                .shadows
-                .iter()
-                .map(|shadow| shadow.cross(row.number, self.screen));
-            scratch.floor_shadows.clear();
-            scratch.floor_shadows.extend(shadows);
-            match &floor.mirrored {
-                Some(mirrored) => mirrored.cross(row.number, self.screen, &mut crossed.spans),
-                None => crossed.spans.clear(),
-            }
-            let spans = crossed.spans.iter().map(|(_, span)| span);
-            let spans = spans.chain(&scratch.floor_shadows);
-            cut((0, self.screen.size), spans, &mut crossed.cuts);
-        }
-        let cuts = std::mem::take(&mut crossed.cuts);
-        let runs = cuts
-            .windows(2)
-            .map(|ends| (ends[0].max(columns.0), ends[1].min(columns.1)));
-        for columns in runs.filter(|(from, to)| from < to) {
-            match any(&scratch.floor_shadows, columns.0) {
-                Some(true) => row.fill(columns, Decision::SurfaceInShadow, &floor.in_shadow),
-                Some(false) if crossed.meet(columns.0) => match &floor.mirrored {
-                    Some(mirrored) => {
-                        self.reflection(row, scratch, columns, &crossed.met, (floor, mirrored));
-                    }
-                    None => row.fill(columns, Decision::Surface, &floor.paint),
-                },
-                _ => row.ask(columns.0..columns.1, self.pixels),
-            }
-        }
-        crossed.cuts = cuts;
-        scratch.mirrored = crossed;
+    fn surface<'f>(
+        &'f self,
+        progress: &mut Progress<'_, 'f, '_>,
+        column: &Column,
+        columns: Columns,
+        floor: &'f Floor,
+    ) {
+        let shows = match (column.surface_in_shadow(), &floor.mirrored) {
+            (Some(true), _) => Show::Paint(&floor.in_shadow),
+            (None, _) => Show::Unknown,
+            (Some(false), None) => Show::Paint(&floor.paint),
+            (Some(false), Some(mirrored)) => match column.mirrored.known() {
+                Some(met) => {
+                    return self.reflection(progress, column, columns, met, (floor, mirrored));
+                }
+                None => Show::Unknown,
+            },
+        };
+        self.show(progress, columns, shows);
     }
 
     /// Columns in which the surface mirrors the first of these solids.
-    fn reflection(
-        &self,
-        row: &mut Row<'_>,
-        scratch: &mut Scratch,
+    fn reflection<'f>(
+        &'f self,
+        progress: &mut Progress<'_, 'f, '_>,
+        column: &Column,
         columns: Columns,
         met: &[usize],
-        (floor, mirrored): (&Floor, &Solids),
+        (floor, mirrored): (&'f Floor, &'f Solids),
     ) {
         // A solid that goes through the surface may be met below it, where nothing is mirrored.
         let across = met
             .iter()
             .any(|&solid| mirrored.solids[solid].side != Side::Above);
         if across {
-            return row.ask(columns.0..columns.1, self.pixels);
+            return self.show(progress, columns, Show::Unknown);
         }
-        match self.front(mirrored, met, None, row.y, columns) {
-            Front::Solid(solid) => self.solid(row, scratch, mirrored, solid, columns),
-            Front::Rest => row.fill(columns, Decision::Surface, &floor.paint),
+        let shows = match self.front(mirrored, met, None, progress.row.y, columns) {
+            Front::Solid(solid) => solid_in(&mirrored.solids[solid], column),
+            Front::Rest => Show::Paint(&floor.paint),
             Front::Unknown => match halves(columns) {
                 Some(halves) => {
                     for half in halves {
-                        self.reflection(row, scratch, half, met, (floor, mirrored));
+                        self.reflection(progress, column, half, met, (floor, mirrored));
                     }
+                    return;
                 }
-                None => row.ask(columns.0..columns.1, self.pixels),
+                None => Show::Unknown,
             },
+        };
+        self.show(progress, columns, shows);
+    }
+
+    /// The next columns of a row. They are written when it is known where what they show ends.
+    fn show<'f>(&'f self, progress: &mut Progress<'_, 'f, '_>, columns: Columns, shows: Show<'f>) {
+        match &mut progress.stretch {
+            Some(stretch) if stretch.shows.is(&shows) => stretch.columns.1 = columns.1,
+            _ => {
+                self.write(progress);
+                progress.stretch = Some(Stretch { columns, shows });
+            }
         }
     }
+
+    /// Writes what is about to be written.
+    fn write(&self, progress: &mut Progress<'_, '_, '_>) {
+        let Some(Stretch { columns, shows }) = progress.stretch.take() else {
+            return;
+        };
+        let row = &mut progress.row;
+        match shows {
+            Show::Paint(paint) => row.fill(columns, paint),
+            Show::Ball(ball) => {
+                row.shade(columns, ball, self.precision, self.screen, progress.shading);
+                row.ask(progress.shading.doubts.drain(..), self.pixels);
+            }
+            Show::Unknown => row.ask(columns.0..columns.1, self.pixels),
+        }
+    }
+}
+
+/// What columns show where they see a solid; `column` is one of them.
+fn solid_in<'f>(solid: &'f Solid, column: &Column) -> Show<'f> {
+    match &solid.body {
+        Body::Flat(paint) => Show::Paint(paint),
+        Body::Ball(ball) => Show::Ball(ball),
+        Body::Facets(facets, pairs) => match last_entered(pairs, column) {
+            Some(last) => facet_in(&facets[last], column),
+            None => Show::Unknown,
+        },
+        Body::Unknown => Show::Unknown,
+    }
+}
+
+/// What they show where they see a face.
+fn facet_in<'f>(facet: &'f Facet, column: &Column) -> Show<'f> {
+    if facet.turned_away {
+        return Show::Paint(&facet.in_shadow);
+    }
+    let mut all_known = true;
+    for shadow in facet.shadows.clone() {
+        match column.holds(shadow) {
+            Some(true) => return Show::Paint(&facet.in_shadow),
+            Some(false) => {}
+            None => all_known = false,
+        }
+    }
+    if all_known {
+        Show::Paint(&facet.lit)
+    } else {
+        Show::Unknown
+    }
+}
+
+/// The facet that eye rays enter last.
+fn last_entered(pairs: &[Pair], column: &Column) -> Option<usize> {
+    let mut last = 0;
+    for pair in pairs {
+        if pair.facets.0 == last && !column.holds(pair.first)? {
+            last = pair.facets.1;
+        }
+    }
+    Some(last)
 }
 
 impl Floor {
@@ -479,6 +455,7 @@ impl Floor {
         floor: &pixel::Floor<Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
         screen: Screen,
+        borders: &mut Borders,
     ) -> Floor {
         let zero = Bounded::exact(0.0);
         let [one, third] = [1.0, 3.0].map(|x| Bounded::exact(1.0) / Bounded::exact(x));
@@ -507,20 +484,26 @@ impl Floor {
         // seen, and not the surface.
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
+        let paint = |decision| Paint::new(decision, color(decision));
+        let rows = floor.extent.rows(screen.size);
+        let outline = Shape::new(sides.into(), None, screen);
+        borders.add(outline.within(rows), Border::Surface);
+        let casters = 0..solids as u16;
+        for shadow in solids::shadows_on(&sheet, &picture.view, casters, is_ahead, screen) {
+            borders.add(shadow.within(rows), Border::ShadowOnSurface);
+        }
         Floor {
-            outline: Shape::new(sides.into(), None, screen).within(floor.extent.rows(screen.size)),
-            shadows: solids::shadows_on(&sheet, &picture.view, 0..solids as u16, is_ahead, screen),
             mirrored: floor
                 .mirror
                 .as_ref()
-                .map(|mirror| Solids::new(picture, &mirror.view, true, color, screen)),
+                .map(|mirror| Solids::new(picture, &mirror.view, true, color, screen, borders)),
             depth: [
                 -height.value(),
                 third.value(),
                 (height.error() + 8.0 * U * magnitude) * MORE,
             ],
-            paint: Paint::new(color(Decision::Surface)),
-            in_shadow: Paint::new(color(Decision::SurfaceInShadow)),
+            paint: paint(Decision::Surface),
+            in_shadow: paint(Decision::SurfaceInShadow),
         }
     }
 
@@ -532,44 +515,8 @@ impl Floor {
     }
 }
 
-/// Cuts columns where any of the spans begins or ends, certainly or possibly.
-fn cut<'s>(columns: Columns, spans: impl Iterator<Item = &'s Span>, cuts: &mut Vec<u32>) {
-    cuts.clear();
-    cuts.push(columns.0);
-    for span in spans {
-        span.cut(columns, cuts);
-    }
-    cuts.push(columns.1);
-    cuts.sort_unstable();
-    cuts.dedup();
-}
-
 /// Both halves of some columns, if there are more than two.
 fn halves((from, to): Columns) -> Option<[Columns; 2]> {
     let middle = from + (to - from) / 2;
     (to - from > 2).then_some([(from, middle), (middle, to)])
-}
-
-/// Whether any of the spans holds a column.
-fn any(spans: &[Span], column: u32) -> Option<bool> {
-    let mut all_known = true;
-    for span in spans {
-        match span.holds(column) {
-            Some(true) => return Some(true),
-            Some(false) => {}
-            None => all_known = false,
-        }
-    }
-    all_known.then_some(false)
-}
-
-/// The facet that eye rays enter last: `lines` tells where the first of each pair is.
-fn last_entered(pairs: &[Pair], lines: &[Span], column: u32) -> Option<usize> {
-    let mut last = 0;
-    for (pair, line) in pairs.iter().zip(lines) {
-        if pair.facets.0 == last && !line.holds(column)? {
-            last = pair.facets.1;
-        }
-    }
-    Some(last)
 }

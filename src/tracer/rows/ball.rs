@@ -136,6 +136,8 @@ pub(super) struct Ball {
     pub(super) highlight: f64,
     /// Red, green and blue.
     pub(super) channels: [Channel; 3],
+    /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
+    pub(super) shadows: bool,
 }
 
 /// ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ: a channel of the colour, its coefficients multiplied out.
@@ -155,6 +157,7 @@ impl Ball {
         outline: &Ellipse,
         shading: &Shading<Bounded>,
         color: Vector<Bounded>,
+        shadows: bool,
     ) -> Ball {
         let radius = sphere.radius.at_most() * MORE;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
@@ -230,6 +233,7 @@ impl Ball {
                 channel(color.y, green),
                 channel(color.z, blue),
             ],
+            shadows,
         }
     }
 

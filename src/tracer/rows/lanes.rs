@@ -6,7 +6,8 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 
 use super::ball::{Ball, Form, Stretch, ZONES};
-use super::shape::{MORE, Screen, U};
+use super::shape::{MORE, Screen, U, places};
+use super::solids::ShadedBall;
 use crate::number::Bounded;
 use crate::tracer::decision::Decision;
 
@@ -27,15 +28,13 @@ pub(super) struct Passing {
     errors: [f64; ZONES],
 }
 
-/// A sphere to be shaded in a row.
-pub(super) struct Shade<'a> {
-    pub(super) ball: &'a Ball,
-    pub(super) casters: &'a [Caster],
-    /// Those of them that can throw a shadow on any pixel of the run.
-    pub(super) in_reach: &'a [usize],
-    /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
-    pub(super) shadows: bool,
-    pub(super) in_shadow: &'a Paint,
+/// What the shading of a run needs, kept for the next.
+#[derive(Default)]
+pub(super) struct Shading {
+    /// Which casters can throw a shadow on any pixel of the run.
+    pub(super) in_reach: Vec<usize>,
+    /// The columns left in doubt.
+    pub(super) doubts: Vec<u32>,
 }
 
 /// The pixels of a run: where they are, and where they go.
@@ -46,14 +45,9 @@ pub(super) struct Run<'r> {
     /// The first column.
     pub(super) from: u32,
     pub(super) samples: &'r mut [f32],
-    /// Where decisions go, and the two that there are: in the light, and in shadow.
-    pub(super) decisions: Option<(&'r mut [Decision], [Decision; 2])>,
-    /// The columns left in doubt.
-    pub(super) doubts: &'r mut Vec<u32>,
+    pub(super) decisions: Option<&'r mut [Decision]>,
+    pub(super) shading: &'r mut Shading,
 }
-
-/// X of neighbouring columns, from the first.
-const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
 
 // No closures below: the instructions of a level are only there for what is inlined into its dispatch, which closures
 // given to other functions are not.
@@ -61,13 +55,13 @@ const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
 impl Run<'_> {
     /// Writes the decisions of some pixels, bit by bit in shadow or not.
     #[inline(always)]
-    pub(super) fn decide(&mut self, pixels: Range<usize>, in_shadow: u64) {
-        if let Some((decisions, [light, shadow])) = &mut self.decisions {
+    pub(super) fn decide(&mut self, shaded: &ShadedBall, pixels: Range<usize>, in_shadow: u64) {
+        if let Some(decisions) = &mut self.decisions {
             for (i, decision) in decisions[pixels].iter_mut().enumerate() {
                 *decision = if in_shadow >> i & 1 == 1 {
-                    *shadow
+                    shaded.in_shadow.decision
                 } else {
-                    *light
+                    shaded.lit
                 };
             }
         }
@@ -87,27 +81,33 @@ struct Hits<V> {
 
 /// Shades a run of pixels that see a sphere.
 #[inline(always)]
-pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
+pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
     let width = S::f32s::LEN;
     let half = S::f64s::LEN;
-    let m = shade.ball.off.at(run.y);
+    let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let zero = S::f32s::splat(simd, 0.0);
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let low = hits(simd, shade, m, x);
-        let high = hits(simd, shade, m, x + 3.0 * half as f64);
+        let low = hits(simd, shaded, &run.shading.in_reach, m, x);
+        let high = hits(
+            simd,
+            shaded,
+            &run.shading.in_reach,
+            m,
+            x + 3.0 * half as f64,
+        );
         let in_shadow = low.in_shadow | high.in_shadow << half;
         let mut known = low.known | high.known << half;
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
-            fill(simd, samples, shade.in_shadow);
+            fill(simd, samples, &shaded.in_shadow);
         } else {
-            let (low_lower, low_upper) = lit(simd, shade, m, &low);
-            let (high_lower, high_upper) = lit(simd, shade, m, &high);
+            let (low_lower, low_upper) = lit(simd, &shaded.ball, m, &low);
+            let (high_lower, high_upper) = lit(simd, &shaded.ball, m, &high);
             let dark = S::mask32s::from_bitmask(simd, in_shadow);
             let mut channels = [zero; 3];
             for i in 0..3 {
@@ -115,16 +115,17 @@ pub(super) fn shade<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
                 let upper = low_upper[i].narrow(high_upper[i]);
                 known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
                 // + 0 turns −0 into +0.
-                let shadow = S::f32s::splat(simd, shade.in_shadow.0[i]);
+                let shadow = S::f32s::splat(simd, shaded.in_shadow.samples[i]);
                 channels[i] = dark.select(shadow, upper + zero);
             }
             let [red, green, blue] = &channels;
             interleave(samples, red.as_slice(), green.as_slice(), blue.as_slice());
         }
-        run.decide(first..first + here, in_shadow);
+        run.decide(shaded, first..first + here, in_shadow);
         let mut doubts = !known & all;
         while doubts != 0 {
-            run.doubts
+            run.shading
+                .doubts
                 .push(run.from + first as u32 + doubts.trailing_zeros());
             doubts &= doubts - 1;
         }
@@ -150,22 +151,27 @@ fn value<S: Simd>(simd: S, form: &Form, m: f64, q: S::f64s, s: S::f64s) -> S::f6
 }
 
 #[inline(always)]
-fn hits<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Hits<S::f64s> {
-    let ball: &Ball = shade.ball;
-    let places = S::f64s::from_slice(simd, &PLACES[..S::f64s::LEN]);
-    let q = places + x - ball.center;
+fn hits<S: Simd>(
+    simd: S,
+    shaded: &ShadedBall,
+    in_reach: &[usize],
+    m: f64,
+    x: f64,
+) -> Hits<S::f64s> {
+    let ball = &shaded.ball;
+    let q = places::<S>(simd, 0) + x - ball.center;
     let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
     let zone = usize::from(squared.simd_lt(ball.least[0]).any_true());
     let mut known = squared.simd_ge(ball.least[1]);
     let s = squared.sqrt();
     let light = value(simd, &ball.light, m, q, s);
     let mut in_shadow = S::mask64s::splat(simd, false);
-    if shade.shadows {
+    if ball.shadows {
         let error = ball.light.errors[zone];
         in_shadow = light.simd_lt(-error);
         let mut settled = in_shadow | light.simd_gt(error);
-        for &caster in shade.in_reach {
-            let (inside, outside) = shadowed(simd, &shade.casters[caster], zone, m, q, s);
+        for &caster in in_reach {
+            let (inside, outside) = shadowed(simd, &shaded.casters[caster], zone, m, q, s);
             in_shadow |= inside;
             settled &= inside | outside;
         }
@@ -185,11 +191,10 @@ fn hits<S: Simd>(simd: S, shade: &Shade<'_>, m: f64, x: f64) -> Hits<S::f64s> {
 #[inline(always)]
 fn lit<S: Simd>(
     simd: S,
-    shade: &Shade<'_>,
+    ball: &Ball,
     m: f64,
     hits: &Hits<S::f64s>,
 ) -> ([S::f64s; 3], [S::f64s; 3]) {
-    let ball: &Ball = shade.ball;
     let zero = S::f64s::splat(simd, 0.0);
     let light = hits.light.max(zero);
     let mut samples = [zero; 3];
@@ -319,20 +324,23 @@ impl Caster {
     }
 }
 
-/// A colour, as it lies in memory: the same pixel again and again.
-#[derive(Clone)]
-pub(super) struct Paint([f32; Paint::LENGTH]);
+/// What many pixels show, and their colour as it lies in memory: the same pixel again and again.
+pub(super) struct Paint {
+    pub(super) decision: Decision,
+    /// Three vectors hold a whole number of pixels, of any width up to a third of this.
+    samples: [f32; 3 * 16],
+}
 
 impl Paint {
-    /// Three vectors hold a whole number of pixels, of any width up to this third.
-    const LENGTH: usize = 3 * 16;
-
-    pub(super) fn new(color: [f32; 3]) -> Paint {
-        Paint(std::array::from_fn(|i| color[i % 3]))
+    pub(super) fn new(decision: Decision, color: [f32; 3]) -> Paint {
+        Paint {
+            decision,
+            samples: std::array::from_fn(|i| color[i % 3]),
+        }
     }
 
     pub(super) fn color(&self) -> [f32; 3] {
-        [self.0[0], self.0[1], self.0[2]]
+        [self.samples[0], self.samples[1], self.samples[2]]
     }
 }
 
@@ -344,7 +352,7 @@ pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
     } else if samples.len() >= 3 * 4 {
         fill_by::<S, f32x4<S>>(simd, samples, paint);
     } else {
-        for (sample, color) in samples.iter_mut().zip(&paint.0) {
+        for (sample, color) in samples.iter_mut().zip(&paint.samples) {
             *sample = *color;
         }
     }
@@ -354,9 +362,9 @@ pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
-    let first = V::from_slice(simd, &paint.0[..width]);
-    let second = V::from_slice(simd, &paint.0[width..2 * width]);
-    let third = V::from_slice(simd, &paint.0[2 * width..3 * width]);
+    let first = V::from_slice(simd, &paint.samples[..width]);
+    let second = V::from_slice(simd, &paint.samples[width..2 * width]);
+    let third = V::from_slice(simd, &paint.samples[2 * width..3 * width]);
     let last = samples.len() - 3 * width;
     let mut at = 0;
     loop {

@@ -3,8 +3,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdElement};
 
-use super::ball::{Ball, Form};
-use super::lanes::{Caster, Run, Shade, interleave};
+use super::ball::Form;
+use super::lanes::{Caster, Run, interleave};
+use super::solids::ShadedBall;
 
 /// A float of a kernel.
 pub(super) trait Lane: SimdElement {
@@ -27,16 +28,16 @@ impl Lane for f64 {
 
 /// Shades a run of pixels that see a sphere, in f32.
 #[inline(always)]
-pub(super) fn shade_in_single<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
-    let m = shade.ball.off.at(run.y);
+pub(super) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
+    let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let (channels, in_shadow) = lit::<S, S::f32s>(simd, shade, m, x);
+        let (channels, in_shadow) = lit::<S, S::f32s>(simd, shaded, &run.shading.in_reach, m, x);
         put(
             simd,
-            shade,
+            shaded,
             run,
             &mut first,
             channels,
@@ -47,22 +48,28 @@ pub(super) fn shade_in_single<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run
 
 /// The same in f64, rounded once at the end.
 #[inline(always)]
-pub(super) fn shade_in_double<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run<'_>) {
+pub(super) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
     let half = S::f64s::LEN;
-    let m = shade.ball.off.at(run.y);
+    let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let (low, low_shadow) = lit::<S, S::f64s>(simd, shade, m, x);
-        let (high, high_shadow) = lit::<S, S::f64s>(simd, shade, m, x + 3.0 * half as f64);
+        let (low, low_shadow) = lit::<S, S::f64s>(simd, shaded, &run.shading.in_reach, m, x);
+        let (high, high_shadow) = lit::<S, S::f64s>(
+            simd,
+            shaded,
+            &run.shading.in_reach,
+            m,
+            x + 3.0 * half as f64,
+        );
         let channels = [
             low[0].narrow(high[0]),
             low[1].narrow(high[1]),
             low[2].narrow(high[2]),
         ];
         let in_shadow = low_shadow.to_bitmask() | high_shadow.to_bitmask() << half;
-        put(simd, shade, run, &mut first, channels, in_shadow);
+        put(simd, shaded, run, &mut first, channels, in_shadow);
     }
 }
 
@@ -70,7 +77,7 @@ pub(super) fn shade_in_double<S: Simd>(simd: S, shade: &Shade<'_>, run: &mut Run
 #[inline(always)]
 fn put<S: Simd>(
     simd: S,
-    shade: &Shade<'_>,
+    shaded: &ShadedBall,
     run: &mut Run<'_>,
     first: &mut usize,
     mut channels: [S::f32s; 3],
@@ -78,13 +85,13 @@ fn put<S: Simd>(
 ) {
     let here = S::f32s::LEN.min(run.samples.len() / 3 - *first);
     let dark = S::mask32s::from_bitmask(simd, in_shadow);
-    for (channel, &shadow) in channels.iter_mut().zip(&shade.in_shadow.color()) {
+    for (channel, &shadow) in channels.iter_mut().zip(&shaded.in_shadow.color()) {
         *channel = dark.select(S::f32s::splat(simd, shadow), *channel + 0.0);
     }
     let samples = &mut run.samples[3 * *first..3 * (*first + here)];
     let [red, green, blue] = &channels;
     interleave(samples, red.as_slice(), green.as_slice(), blue.as_slice());
-    run.decide(*first..*first + here, in_shadow);
+    run.decide(shaded, *first..*first + here, in_shadow);
     *first += here;
 }
 
@@ -92,11 +99,12 @@ fn put<S: Simd>(
 #[inline(always)]
 fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     simd: S,
-    shade: &Shade<'_>,
+    shaded: &ShadedBall,
+    in_reach: &[usize],
     m: f64,
     x: f64,
 ) -> ([V; 3], V::Mask) {
-    let ball: &Ball = shade.ball;
+    let ball = &shaded.ball;
     let zero = V::splat(simd, V::Element::of(0.0));
     let one = V::splat(simd, V::Element::of(1.0));
     // X − c_x as f64 has it: it must not depend on where a vector begins.
@@ -108,10 +116,10 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     let s = squared.max(zero).sqrt();
     let mut light = value::<S, V>(simd, &ball.light, m, q, s);
     let mut in_shadow = V::Mask::splat(simd, false);
-    if shade.shadows {
+    if ball.shadows {
         in_shadow = light.simd_le(zero);
-        for &caster in shade.in_reach {
-            in_shadow |= shadowed::<S, V>(simd, &shade.casters[caster], m, q, s);
+        for &caster in in_reach {
+            in_shadow |= shadowed::<S, V>(simd, &shaded.casters[caster], m, q, s);
         }
     }
     light = light.max(zero);

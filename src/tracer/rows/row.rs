@@ -2,7 +2,10 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::lanes::{self, Paint};
+use super::lanes::{self, Paint, Run, Shading};
+use super::shape::Screen;
+use super::solids::ShadedBall;
+use super::{Precision, plain};
 use crate::tracer::InDoubt;
 use crate::tracer::decision::Decision;
 use crate::tracer::ladder::Pixels;
@@ -40,9 +43,9 @@ pub(super) type Columns = (u32, u32);
 
 impl Row<'_> {
     /// One colour in all columns.
-    pub(super) fn fill(&mut self, (from, to): Columns, decision: Decision, paint: &Paint) {
+    pub(super) fn fill(&mut self, (from, to): Columns, paint: &Paint) {
         if let Some(decisions) = &mut self.decisions {
-            decisions[from as usize..to as usize].fill(decision);
+            decisions[from as usize..to as usize].fill(paint.decision);
         }
         let Some(memory) = self.memory.take() else {
             return self.write((from, to), paint);
@@ -71,6 +74,38 @@ impl Row<'_> {
     fn write(&mut self, (from, to): Columns, paint: &Paint) {
         let samples = &mut self.samples[3 * from as usize..3 * to as usize];
         dispatch!(self.level, simd => lanes::fill(simd, samples, paint));
+    }
+
+    /// A sphere. What is left in doubt is in `shading`.
+    pub(super) fn shade(
+        &mut self,
+        columns: Columns,
+        shaded: &ShadedBall,
+        precision: Precision,
+        screen: Screen,
+        shading: &mut Shading,
+    ) {
+        let ball = &shaded.ball;
+        let ends = (screen.place(columns.0), screen.place(columns.1 - 1));
+        let stretch = ball.stretch(self.y, ends);
+        let casters = shaded.casters.iter().enumerate();
+        let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+        shading.in_reach.clear();
+        shading.in_reach.extend(near.map(|(number, _)| number));
+        let range = columns.0 as usize..columns.1 as usize;
+        let mut run = Run {
+            screen,
+            y: self.y,
+            from: columns.0,
+            samples: &mut self.samples[3 * range.start..3 * range.end],
+            decisions: self.decisions.as_mut().map(|all| &mut all[range]),
+            shading,
+        };
+        dispatch!(self.level, simd => match precision {
+            Precision::Bounded => lanes::shade(simd, shaded, &mut run),
+            Precision::Double => plain::shade_in_double(simd, shaded, &mut run),
+            Precision::Single => plain::shade_in_single(simd, shaded, &mut run),
+        });
     }
 
     /// The row is written.

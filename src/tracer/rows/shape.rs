@@ -13,7 +13,10 @@
 //! u is 2⁻⁵³, the largest relative error of an f64 operation. Bounds are sums of terms that are not negative; computing them rounds
 //! too, each by less than 2⁻⁴⁰, for which [`MORE`] makes up.
 
-use super::span::{HalfLine, Span};
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+use super::span::{HalfLines, ROWS, Spans};
 use crate::number::{Bounded, Real};
 use crate::scene::Support;
 use crate::tracer::tetrahedron::HalfSpace;
@@ -163,71 +166,83 @@ impl HalfPlane {
         Some(sign.is_gt() || (self.closed && sign.is_eq()))
     }
 
-    /// Its columns of the row at Y.
-    pub(super) fn cross(&self, y: f64, screen: Screen) -> HalfLine {
-        let g = self.constant.value() + self.row.value() * y;
-        match self.crossing {
-            Crossing::Never => {
-                let known = if g > self.error {
-                    Some(true)
-                } else if g < -self.error {
-                    Some(false)
-                } else if self.column.is_zero() {
-                    self.decide(0.0, y)
-                } else {
-                    None
-                };
-                match known {
-                    Some(all) => HalfLine::all(all, screen.size),
-                    None => HalfLine {
-                        rightward: true,
-                        possible: 0,
-                        certain: screen.size,
-                    },
-                }
-            }
-            Crossing::Once { inverse, slack } => {
-                let root = screen.half - g * inverse;
-                let (low, high) = (root - slack, root + slack);
-                let rightward = inverse > 0.0;
-                let line = if rightward {
-                    HalfLine {
-                        rightward,
-                        possible: screen.ceil(low),
-                        certain: screen.ceil(high),
-                    }
-                } else {
-                    HalfLine {
-                        rightward,
-                        possible: screen.count(high),
-                        certain: screen.count(low),
-                    }
-                };
-                if line.possible == line.certain {
-                    line
-                } else {
-                    self.narrow(line, y, screen)
-                }
+    /// Its columns of the rows from Y = `y` on.
+    #[inline(always)]
+    fn cross<S: Simd>(&self, simd: S, y: f64, screen: Screen) -> HalfLines {
+        let (inverse, slack) = match self.crossing {
+            Crossing::Never => return self.cross_never(y, screen),
+            Crossing::Once { inverse, slack } => (inverse, slack),
+        };
+        let rightward = inverse > 0.0;
+        let mut lines = HalfLines {
+            rightward,
+            possible: [0; ROWS],
+            certain: [0; ROWS],
+        };
+        for first in (0..ROWS).step_by(S::f64s::LEN) {
+            let y = places::<S>(simd, first) + y;
+            let g = y * self.row.value() + self.constant.value();
+            let root = -(g * inverse) + screen.half;
+            let (low, high) = (root - slack, root + slack);
+            if rightward {
+                put_ceil::<S>(screen, low, &mut lines.possible[first..]);
+                put_ceil::<S>(screen, high, &mut lines.certain[first..]);
+            } else {
+                put_count::<S>(screen, high, &mut lines.possible[first..]);
+                put_count::<S>(screen, low, &mut lines.certain[first..]);
             }
         }
+        if lines.possible != lines.certain {
+            self.narrow(&mut lines, y, screen);
+        }
+        lines
+    }
+
+    /// The same where no row is known to cross its border.
+    fn cross_never(&self, y: f64, screen: Screen) -> HalfLines {
+        let mut lines = HalfLines {
+            rightward: true,
+            possible: [0; ROWS],
+            certain: [0; ROWS],
+        };
+        for row in 0..ROWS {
+            let y = y + PLACES[row];
+            let g = self.constant.value() + self.row.value() * y;
+            let known = if g > self.error {
+                Some(true)
+            } else if g < -self.error {
+                Some(false)
+            } else if self.column.is_zero() {
+                self.decide(0.0, y)
+            } else {
+                None
+            };
+            let border = |all: bool| if all { 0 } else { screen.size };
+            lines.possible[row] = border(known != Some(false));
+            lines.certain[row] = border(known == Some(true));
+        }
+        lines
     }
 
     /// Asks the columns in doubt, from the outside in.
-    fn narrow(&self, mut line: HalfLine, y: f64, screen: Screen) -> HalfLine {
-        while line.possible != line.certain {
-            let column = if line.rightward {
-                line.possible
-            } else {
-                line.possible - 1
-            };
-            match self.decide(screen.place(column), y) {
-                Some(true) => line.certain = line.possible,
-                Some(false) if line.rightward => line.possible += 1,
-                Some(false) => line.possible -= 1,
-                None => break,
+    fn narrow(&self, lines: &mut HalfLines, y: f64, screen: Screen) {
+        for row in 0..ROWS {
+            let y = y + PLACES[row];
+            let (possible, certain) = (&mut lines.possible[row], &mut lines.certain[row]);
+            while *possible != *certain {
+                let column = if lines.rightward {
+                    *possible
+                } else {
+                    *possible - 1
+                };
+                match self.decide(screen.place(column), y) {
+                    Some(true) => *certain = *possible,
+                    Some(false) if lines.rightward => *possible += 1,
+                    Some(false) => *possible -= 1,
+                    None => break,
+                }
             }
         }
-        line
     }
 }
 
@@ -245,6 +260,8 @@ pub(super) struct Ellipse {
     pub(super) chord_error: f64,
     /// A bound on the error of an end of the chord in columns, apart from that.
     slack: f64,
+    /// Whether all of these are finite; otherwise nothing is known.
+    is_bounded: bool,
 }
 
 /// m as a function of Y: `slope` · (Y − `zero`).
@@ -298,7 +315,18 @@ impl Ellipse {
         // by less than u of |middle| + radius + N each.
         let middle = center.0.value().abs() + center.1.value().abs() * reach;
         let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
+        let all = [
+            center.0.value(),
+            center.1.value(),
+            slope.value(),
+            zero.value(),
+            squared_radius.value(),
+            limit,
+            chord_error,
+            slack,
+        ];
         Ellipse {
+            is_bounded: all.iter().all(|x| x.is_finite()),
             center: (center.0.value(), center.1.value()),
             off: Off {
                 slope: slope.value(),
@@ -349,43 +377,53 @@ impl Ellipse {
         )
     }
 
-    /// Its columns of the row at Y.
-    pub(super) fn cross(&self, y: f64, screen: Screen) -> Span {
-        let m = self.off.at(y);
-        let beyond = m.abs() > self.limit;
-        if beyond {
-            return Span::NONE;
+    /// Its columns of the rows from Y = `y` on.
+    #[inline(always)]
+    fn cross<S: Simd>(&self, simd: S, y: f64, screen: Screen) -> Spans {
+        if !self.is_bounded {
+            return Spans::unknown(screen.size);
         }
-        let squared = self.squared_radius - m * m;
-        let most = squared + self.chord_error;
-        let out_of_bounds = !(most.is_finite() && self.slack.is_finite());
-        if out_of_bounds {
-            return Span::unknown(screen.size);
+        let mut spans = Spans::NONE;
+        for first in (0..ROWS).step_by(S::f64s::LEN) {
+            let y = places::<S>(simd, first) + y;
+            let zero = S::f64s::splat(simd, 0.0);
+            let m = (y - self.off.zero) * self.off.slope;
+            let squared = -(m * m) + self.squared_radius;
+            let (most, least) = (squared + self.chord_error, squared - self.chord_error);
+            let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
+            let is_certain = is_met & least.simd_gt(zero);
+            let middle = y * self.center.1 + self.center.0;
+            // No NaN comes here: m is infinite at worst, and then the row is beyond.
+            let half = most.max(zero).sqrt();
+            let from = in_columns::<S>(screen, middle - half) - self.slack;
+            let to = in_columns::<S>(screen, middle + half) + self.slack;
+            // Where nothing is met, no column is before the row's first.
+            let none = S::f64s::splat(simd, -1.0);
+            put_ceil::<S>(
+                screen,
+                is_met.select(from, none),
+                &mut spans.possible[0][first..],
+            );
+            put_count::<S>(
+                screen,
+                is_met.select(to, none),
+                &mut spans.possible[1][first..],
+            );
+            let half = least.max(zero).sqrt();
+            let from = in_columns::<S>(screen, middle - half) + self.slack;
+            let to = in_columns::<S>(screen, middle + half) - self.slack;
+            put_ceil::<S>(
+                screen,
+                is_certain.select(from, none),
+                &mut spans.certain[0][first..],
+            );
+            put_count::<S>(
+                screen,
+                is_certain.select(to, none),
+                &mut spans.certain[1][first..],
+            );
         }
-        if most < 0.0 {
-            return Span::NONE;
-        }
-        let middle = self.center.0 + self.center.1 * y;
-        let place = |x: f64| screen.half + x * (1.0 / 3.0);
-        let half = most.sqrt();
-        let possible = (
-            screen.ceil(place(middle - half) - self.slack),
-            screen.count(place(middle + half) + self.slack),
-        );
-        if possible.0 >= possible.1 {
-            return Span::NONE;
-        }
-        let least = squared - self.chord_error;
-        let certain = if least > 0.0 {
-            let half = least.sqrt();
-            (
-                screen.ceil(place(middle - half) + self.slack),
-                screen.count(place(middle + half) - self.slack),
-            )
-        } else {
-            (0, 0)
-        };
-        Span::new(possible, certain)
+        spans
     }
 
     /// The rows that it can cross.
@@ -430,33 +468,68 @@ impl Shape {
         }
     }
 
-    /// The ellipse, if it has one.
-    pub(super) fn ellipse(&self) -> Option<&Ellipse> {
-        self.ellipse.as_ref()
-    }
-
     /// The same where it is known to cross no other than these rows.
     pub(super) fn within(mut self, rows: (u32, u32)) -> Shape {
         self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
         self
     }
 
-    /// Its columns of a row.
-    pub(super) fn cross(&self, row: u32, screen: Screen) -> Span {
-        if row < self.rows.0 || row >= self.rows.1 {
-            return Span::NONE;
-        }
+    /// The rows that it can cross.
+    pub(super) fn rows(&self) -> (u32, u32) {
+        self.rows
+    }
+
+    /// Its columns of the rows from `row` on.
+    #[inline(always)]
+    pub(super) fn cross<S: Simd>(&self, simd: S, row: u32, screen: Screen) -> Spans {
         let y = screen.place(row);
-        let mut span = match &self.ellipse {
-            Some(ellipse) => ellipse.cross(y, screen),
-            None => Span::whole(screen.size),
+        let mut spans = match &self.ellipse {
+            Some(ellipse) => ellipse.cross(simd, y, screen),
+            None => Spans::whole(screen.size),
         };
         for half_plane in &self.half_planes {
-            if span.is_none() {
-                return Span::NONE;
-            }
-            span = span.and(half_plane.cross(y, screen).span(screen.size));
+            spans.and(&half_plane.cross(simd, y, screen).spans(screen.size));
         }
-        span
+        let within = |limit: u32| limit.saturating_sub(row);
+        spans.tidy((within(self.rows.0), within(self.rows.1)));
+        spans
+    }
+}
+
+/// Y of neighbouring rows and X of neighbouring columns, from the first.
+pub(super) const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
+
+/// As many of them as there are lanes, from one on.
+#[inline(always)]
+pub(super) fn places<S: Simd>(simd: S, first: usize) -> S::f64s {
+    S::f64s::from_slice(simd, &PLACES[first..first + S::f64s::LEN])
+}
+
+/// Places on the screen, in columns.
+#[inline(always)]
+fn in_columns<S: Simd>(screen: Screen, x: S::f64s) -> S::f64s {
+    x * (1.0 / 3.0) + screen.half
+}
+
+/// The first column at or after each place, given in columns.
+#[inline(always)]
+fn put_ceil<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
+    put_columns::<S>(screen, places.ceil(), columns);
+}
+
+/// The number of columns up to each place, given in columns.
+#[inline(always)]
+fn put_count<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
+    put_columns::<S>(screen, places.floor() + 1.0, columns);
+}
+
+/// Whole numbers, brought into the row.
+#[inline(always)]
+fn put_columns<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
+    let columns_of_row = places.max(0.0).min(f64::from(screen.size));
+    // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper half.
+    let shifted = columns_of_row + f64::from_bits((1023 + 52) << 52);
+    for (column, place) in columns.iter_mut().zip(shifted.as_slice()) {
+        *column = place.to_bits() as u32;
     }
 }

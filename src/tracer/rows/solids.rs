@@ -1,9 +1,12 @@
 //! The solids as a frame's rows cross them: seen directly, or in the mirror.
 
+use std::iter;
+use std::ops::Range;
+
 use super::ball::Ball;
 use super::lanes::{Caster, Paint};
-use super::shape::{Ellipse, HalfPlane, MORE, Screen, Shape, Sheet, U};
-use super::span::Span;
+use super::shape::{Ellipse, HalfPlane, MORE, Off, Screen, Shape, Sheet, U};
+use super::sweep::{Border, Borders};
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Support};
 use crate::stage::Stage;
@@ -23,45 +26,53 @@ pub(super) struct Solids {
 
 /// One of them.
 pub(super) struct Solid {
-    /// Its number in the scene.
-    pub(super) index: u16,
     pub(super) side: Side,
-    outline: Shape,
     depth: Depth,
     pub(super) body: Body,
-    /// Its colour in shadow; of a flat sphere, its colour.
-    pub(super) paint: Paint,
 }
 
 /// How its pixels are coloured.
 pub(super) enum Body {
     /// All alike.
-    Flat,
-    Ball(Box<Ball>, Vec<Caster>),
+    Flat(Paint),
+    Ball(Box<ShadedBall>),
     Facets(Vec<Facet>, Vec<Pair>),
     /// Each is to be asked for.
     Unknown,
 }
 
-/// A face that eye rays enter.
-pub(super) struct Facet {
-    pub(super) face: u8,
-    /// Whether it is in shadow where nothing else throws one.
-    pub(super) turned_away: bool,
-    pub(super) paint: Paint,
-    pub(super) shadows: Vec<Shape>,
+/// A sphere that is shaded.
+pub(super) struct ShadedBall {
+    pub(super) ball: Ball,
+    /// What may throw a shadow on it.
+    pub(super) casters: Vec<Caster>,
+    /// Its decision in the light.
+    pub(super) lit: Decision,
+    pub(super) in_shadow: Paint,
 }
 
-/// Two facets, the first of the lower number, and where eye rays enter it last.
+/// A face that eye rays enter.
+pub(super) struct Facet {
+    pub(super) lit: Paint,
+    pub(super) in_shadow: Paint,
+    /// Whether it is in shadow where nothing else throws one.
+    pub(super) turned_away: bool,
+    /// The borders of the shadows on it.
+    pub(super) shadows: Range<usize>,
+}
+
+/// Two facets, the first of the lower number, and the border of where eye rays enter that last.
 pub(super) struct Pair {
     pub(super) facets: (usize, usize),
-    pub(super) first: HalfPlane,
+    pub(super) first: usize,
 }
 
 /// The parameter at which eye rays enter.
 enum Depth {
     /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `ball.rs`.
     Ball {
+        off: Off,
+        squared_radius: f64,
         center: f64,
         g: [f64; 2],
         error: f64,
@@ -79,6 +90,7 @@ impl Solids {
         mirrored: bool,
         color: &dyn Fn(Decision) -> [f32; 3],
         screen: Screen,
+        borders: &mut Borders,
     ) -> Solids {
         let (scene, stage) = (picture.scene, picture.stage);
         let mut all = Solids {
@@ -102,36 +114,48 @@ impl Solids {
             Some(floor) if mirrored => floor.mirror.as_ref().map(|mirror| mirror.reflectance),
             _ => None,
         };
+        // In the mirror only what the surface shows matters.
+        let rows = match &picture.floor {
+            Some(floor) if mirrored => floor.extent.rows(screen.size),
+            _ => (0, screen.size),
+        };
         if stage != Stage::Tetrahedron {
             for (index, sphere) in view.spheres.iter().enumerate() {
                 let ellipse = Ellipse::outline(sphere.center, sphere.radius, screen);
+                let paint = |in_shadow| {
+                    let decision = all.decision(index as u16, None, in_shadow);
+                    Paint::new(decision, color(decision))
+                };
                 let body = if stage == Stage::Spheres {
-                    Body::Flat
+                    Body::Flat(paint(false))
                 } else if surface_shades(index) {
                     Body::Unknown
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
-                    let ball = Ball::new(sphere, &ellipse, &view.shading, own);
+                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, all.shadows);
                     let casters = if all.shadows {
                         casters_on(&ball, index, view, &facts.casters[index])
                     } else {
                         Vec::new()
                     };
-                    Body::Ball(Box::new(ball), casters)
+                    Body::Ball(Box::new(ShadedBall {
+                        ball,
+                        casters,
+                        lit: all.decision(index as u16, None, false),
+                        in_shadow: paint(all.shadows),
+                    }))
                 };
                 let depth = depth_of_ball(sphere.center, &ellipse, sphere.support, screen);
-                let outline = Shape::new(Vec::new(), Some(ellipse), screen);
-                let in_shadow = all.shadows;
-                let paint = Paint::new(color(all.decision(index as u16, None, in_shadow)));
-                all.solids.push(Solid {
-                    index: index as u16,
-                    side: facts.sides[index],
-                    outline,
-                    depth,
-                    body,
-                    paint,
-                });
+                all.push(
+                    Solid {
+                        side: facts.sides[index],
+                        depth,
+                        body,
+                    },
+                    Shape::new(Vec::new(), Some(ellipse), screen).within(rows),
+                    borders,
+                );
             }
         }
         if stage != Stage::Spheres {
@@ -142,34 +166,30 @@ impl Solids {
                         .map(|half_space| HalfPlane::of(&half_space, &sheet, screen))
                         .collect::<Vec<_>>()
                 };
-                let outline = Shape::new(planes(&mut t.solid.met(&t.from_eye)), None, screen)
-                    .within(view.extents[index].rows(screen.size));
+                let (first, end) = view.extents[index].rows(screen.size);
+                let rows = (first.max(rows.0), end.min(rows.1));
+                let outline = Shape::new(planes(&mut t.solid.met(&t.from_eye)), None, screen);
                 let entered: Vec<usize> = t.from_eye.entered().collect();
                 let (mut facets, mut depths) = (Vec::new(), Vec::new());
                 for &face in &entered {
                     let (sheet, depth) = face_sheet(t.solid.plane(face), screen);
+                    depths.push(depth);
                     let turned_away = all.shadows && t.solid.turned_away(face);
                     let shadows = if all.shadows && !turned_away {
-                        shadows_on(
-                            &sheet,
-                            view,
-                            facts.casters[index].iter().copied(),
-                            |_| false,
-                            screen,
-                        )
+                        let casters = facts.casters[index].iter().copied();
+                        shadows_on(&sheet, view, casters, |_| false, screen)
                     } else {
                         Vec::new()
                     };
-                    depths.push(depth);
+                    let paint = |in_shadow| {
+                        let decision = all.decision(index as u16, Some(face as u8), in_shadow);
+                        Paint::new(decision, color(decision))
+                    };
                     facets.push(Facet {
-                        face: face as u8,
+                        lit: paint(false),
+                        in_shadow: paint(all.shadows),
                         turned_away,
-                        paint: Paint::new(color(all.decision(
-                            index as u16,
-                            Some(face as u8),
-                            false,
-                        ))),
-                        shadows,
+                        shadows: borders.add_details(shadows.into_iter(), rows),
                     });
                 }
                 let place = |face: usize| entered.iter().position(|&other| other == face);
@@ -178,27 +198,42 @@ impl Solids {
                     .solid
                     .entered_pairs(&t.from_eye)
                     .filter_map(|(i, j, first)| {
+                        let first = HalfPlane::of(&first, &sheet, screen);
+                        let first = Shape::new(vec![first], None, screen);
                         Some(Pair {
                             facets: (place(i)?, place(j)?),
-                            first: HalfPlane::of(&first, &sheet, screen),
+                            first: borders.add_details(iter::once(first), rows).start,
                         })
-                    });
+                    })
+                    .collect();
                 let body = if surface_shades(index) {
                     Body::Unknown
                 } else {
-                    Body::Facets(facets, pairs.collect())
+                    Body::Facets(facets, pairs)
                 };
-                all.solids.push(Solid {
-                    index: index as u16,
-                    side: facts.sides[index],
-                    outline,
-                    depth: Depth::Facets(depths),
-                    body,
-                    paint: Paint::new(color(all.decision(index as u16, Some(0), all.shadows))),
-                });
+                all.push(
+                    Solid {
+                        side: facts.sides[index],
+                        depth: Depth::Facets(depths),
+                        body,
+                    },
+                    outline.within(rows),
+                    borders,
+                );
             }
         }
         all
+    }
+
+    fn push(&mut self, solid: Solid, outline: Shape, borders: &mut Borders) {
+        let place = self.solids.len();
+        if !self.mirrored {
+            borders.add(outline, Border::Direct(place));
+        } else if solid.side != Side::Below {
+            // Below the surface nothing is mirrored.
+            borders.add(outline, Border::Mirrored(place));
+        }
+        self.solids.push(solid);
     }
 
     /// What pixels of a solid show.
@@ -214,44 +249,23 @@ impl Solids {
             Decision::Solid(seen)
         }
     }
-
-    /// The solids that a row crosses.
-    pub(super) fn cross(&self, row: u32, screen: Screen, crossed: &mut Vec<(usize, Span)>) {
-        crossed.clear();
-        for (place, solid) in self.solids.iter().enumerate() {
-            // Below the surface nothing is mirrored.
-            if self.mirrored && solid.side == Side::Below {
-                continue;
-            }
-            let span = solid.outline.cross(row, screen);
-            if !span.is_none() {
-                crossed.push((place, span));
-            }
-        }
-    }
 }
 
 impl Solid {
-    /// The outline of a sphere.
-    fn ellipse(&self) -> Option<&Ellipse> {
-        self.outline.ellipse()
-    }
-
     /// Bounds on the parameter at which the eye rays at Y, from one X to another, enter it.
     pub(super) fn depth(&self, y: f64, ends: [f64; 2]) -> (f64, f64) {
         match &self.depth {
             Depth::Ball {
+                off,
+                squared_radius,
                 center,
                 g,
                 error,
                 squared_error,
                 ..
             } => {
-                let Some(outline) = self.ellipse() else {
-                    return (f64::NEG_INFINITY, f64::INFINITY);
-                };
-                let m = outline.off.at(y);
-                let squared = |q: f64| (outline.squared_radius - m * m) - q * q;
+                let m = off.at(y);
+                let squared = |q: f64| (squared_radius - m * m) - q * q;
                 let q = ends.map(|x| x - center);
                 let farthest = q[0].abs().max(q[1].abs());
                 let nearest = if q[0] * q[1] <= 0.0 {
@@ -305,6 +319,8 @@ fn depth_of_ball(
     let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
     let reach = radius + q;
     Depth::Ball {
+        off: outline.off,
+        squared_radius: outline.squared_radius,
         center: center.x.value(),
         g: [constant.value(), 3.0],
         error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
