@@ -25,7 +25,9 @@
 
 mod ball;
 mod lanes;
+mod paint;
 mod plain;
+mod plan;
 mod row;
 mod shape;
 mod solids;
@@ -42,11 +44,13 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
-use lanes::{Paint, Shading};
+use lanes::Shading;
+use paint::{AllPaints, PaintNumber, Paints};
+use plan::{Contest, Plan, Seen, Show};
 pub(super) use row::Memory;
 use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
-use solids::{Body, Facet, Pair, ShadedBall, Solid, Solids};
+use solids::{Body, Facet, Pair, Solids};
 use sweep::{Border, Borders, Column, Sweep};
 
 /// A frame, ready to be traced row by row.
@@ -58,9 +62,10 @@ pub(super) struct Rows<'a, P> {
     borders: Borders,
     direct: Solids,
     floor: Option<Floor>,
-    background: Paint,
+    paints: AllPaints,
+    background: PaintNumber,
     /// The picture of code 2-1, where that is the stage.
-    quadrants: Option<[Paint; 4]>,
+    quadrants: Option<[PaintNumber; 4]>,
     precision: Precision,
 }
 
@@ -75,61 +80,38 @@ pub(super) enum Precision {
     Bounded,
 }
 
+/// What a frame's rows are made of, as they are prepared.
+struct Parts<'c> {
+    screen: Screen,
+    borders: Borders,
+    paints: Paints<'c>,
+}
+
 /// The surface.
 struct Floor {
     mirrored: Option<Solids>,
     /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its error.
     depth: [f64; 3],
-    paint: Paint,
-    in_shadow: Paint,
+    paint: PaintNumber,
+    in_shadow: PaintNumber,
 }
 
 /// What the tracing of a row needs, kept for the next.
 #[derive(Default)]
 pub(super) struct Scratch {
     sweep: Sweep,
+    plan: Plan,
+    settled: Vec<(Columns, Show)>,
     shading: Shading,
 }
 
 /// What is in front of all else in some columns.
 enum Front {
+    /// One of the solids in question.
     Solid(usize),
     /// The surface, or where that is not met either, the background.
     Rest,
     Unknown,
-}
-
-/// What some columns show.
-#[derive(Clone, Copy)]
-enum Show<'f> {
-    Paint(&'f Paint),
-    Ball(&'f ShadedBall),
-    /// It is not known: each is to be asked for.
-    Unknown,
-}
-
-impl Show<'_> {
-    fn is(&self, other: &Show<'_>) -> bool {
-        match (self, other) {
-            (Show::Paint(a), Show::Paint(b)) => std::ptr::eq(*a, *b),
-            (Show::Ball(a), Show::Ball(b)) => std::ptr::eq(*a, *b),
-            (Show::Unknown, Show::Unknown) => true,
-            _ => false,
-        }
-    }
-}
-
-/// Columns that show the same, as far as the sweep has come.
-struct Stretch<'f> {
-    columns: Columns,
-    shows: Show<'f>,
-}
-
-/// A row on its way: what is written, and what is about to be.
-struct Progress<'r, 'f, 's> {
-    row: Row<'r>,
-    stretch: Option<Stretch<'f>>,
-    shading: &'s mut Shading,
 }
 
 impl<'a, P: Lines> Rows<'a, P> {
@@ -138,23 +120,28 @@ impl<'a, P: Lines> Rows<'a, P> {
         let picture = pixels.bounded();
         let screen = Screen::new(picture.size);
         let color = |decision| pixels.color(decision);
-        let paint = |decision| Paint::new(decision, pixels.color(decision));
-        let mut borders = Borders::default();
+        let mut parts = Parts {
+            screen,
+            borders: Borders::default(),
+            paints: Paints::new(&color),
+        };
         let is_quadrants = picture.stage == Stage::Image;
-        let floor = picture
-            .floor
-            .as_ref()
-            .map(|floor| Floor::new(picture, floor, &color, screen, &mut borders));
+        let background = parts.paints.of(Decision::Background);
+        let floor = picture.floor.as_ref();
+        let floor = floor.map(|floor| Floor::new(picture, floor, &mut parts));
+        let direct = Solids::new(picture, &picture.view, false, &mut parts);
+        let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
+        let quadrants = is_quadrants.then(|| [0, 1, 2, 3].map(quadrant));
         Rows {
             pixels,
             screen,
             level,
-            direct: Solids::new(picture, &picture.view, false, &color, screen, &mut borders),
+            borders: parts.borders,
+            paints: parts.paints.all(),
+            direct,
             floor,
-            borders,
-            background: paint(Decision::Background),
-            quadrants: is_quadrants
-                .then(|| [0, 1, 2, 3].map(|number| paint(Decision::Quadrant(number)))),
+            background,
+            quadrants,
             precision,
         }
     }
@@ -175,241 +162,221 @@ impl<'a, P: Lines> Rows<'a, P> {
         scratch: &mut Scratch,
     ) -> InDoubt {
         let screen = self.screen;
-        let mut progress = Progress {
-            row: Row {
-                level: self.level,
-                number,
-                y: screen.place(number),
-                samples,
-                decisions,
-                memory,
-                in_doubt: InDoubt::default(),
-            },
-            stretch: None,
-            shading: &mut scratch.shading,
+        let mut row = Row {
+            level: self.level,
+            number,
+            y: screen.place(number),
+            samples,
+            decisions,
+            memory,
+            in_doubt: InDoubt::default(),
         };
         if let Some(quadrants) = &self.quadrants {
             // Code 2-1 knows two kinds of column.
             let middle = (screen.size / 2 + 1).min(screen.size);
             for columns in [(0, middle), (middle, screen.size)] {
                 if columns.0 < columns.1 {
-                    let paint = &quadrants[usize::from(quadrant(columns.0, number, screen.size))];
-                    progress.row.fill(columns, paint);
+                    let paint = quadrants[usize::from(quadrant(columns.0, number, screen.size))];
+                    row.fill(columns, &self.paints[paint]);
                 }
             }
-            return progress.row.finish();
+            return row.finish();
         }
-        let sweep = &mut scratch.sweep;
-        sweep.enter(number, &self.borders, self.level, screen);
-        let mut from = 0;
-        for crossing in 0..sweep.len() {
-            let to = sweep.place(crossing);
-            if to > from {
-                self.column(&mut progress, &sweep.column, (from, to));
-                from = to;
+        let (sweep, plan) = (&mut scratch.sweep, &mut scratch.plan);
+        if sweep.enter(number, &self.borders, self.level, screen) {
+            plan.clear();
+            for crossing in 0..=sweep.len() {
+                if sweep.has_columns_before(crossing) {
+                    let seen = self.seen(&sweep.column, plan);
+                    plan.add(crossing, seen);
+                }
+                if crossing < sweep.len() {
+                    sweep.pass(crossing, &self.borders);
+                }
             }
-            sweep.pass(crossing, &self.borders);
         }
-        if from < screen.size {
-            self.column(&mut progress, &sweep.column, (from, screen.size));
+        let mut from = 0;
+        for &(crossing, seen) in plan.pieces() {
+            let to = sweep.place(crossing).unwrap_or(screen.size);
+            match seen {
+                Seen::Only(shows) => {
+                    self.write(&mut row, (from, to), shows, &mut scratch.shading);
+                }
+                Seen::First(_) => {
+                    self.settle(plan, seen, row.y, (from, to), &mut scratch.settled);
+                    for (columns, shows) in scratch.settled.drain(..) {
+                        self.write(&mut row, columns, shows, &mut scratch.shading);
+                    }
+                }
+            }
+            from = to;
         }
-        self.write(&mut progress);
-        progress.row.finish()
+        row.finish()
     }
 
-    /// Columns between two crossings, of which `column` is one.
-    fn column<'f>(
-        &'f self,
-        progress: &mut Progress<'_, 'f, '_>,
-        column: &Column,
-        columns: Columns,
-    ) {
+    /// What is seen in a column, and in its neighbours up to the next crossing.
+    fn seen(&self, column: &Column, plan: &mut Plan) -> Seen {
         let Some(met) = column.direct.known() else {
-            return self.show(progress, columns, Show::Unknown);
+            return Seen::UNKNOWN;
         };
         // What is above the surface hides it.
-        let hidden = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
-        let on_floor = if met.iter().any(hidden) {
+        let hides = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
+        let on_floor = if met.iter().any(hides) {
             Some(false)
         } else {
             column.surface()
         };
-        match on_floor {
-            Some(on_floor) => {
-                let floor = self.floor.as_ref().filter(|_| on_floor);
-                self.first(progress, column, columns, met, floor);
+        let floor = match on_floor {
+            Some(on_floor) => self.floor.as_ref().filter(|_| on_floor),
+            None => return Seen::UNKNOWN,
+        };
+        match (met, floor) {
+            ([], None) => Seen::Only(Show::Paint(self.background)),
+            ([solid], None) => Seen::Only(solid_in(&self.direct, *solid, column)),
+            ([], Some(floor)) => self.seen_of_surface(floor, column, plan),
+            (_, floor) => {
+                let rest = match floor {
+                    Some(floor) => self.seen_of_surface(floor, column, plan),
+                    None => Seen::Only(Show::Paint(self.background)),
+                };
+                let shows = met
+                    .iter()
+                    .map(|&solid| (solid, solid_in(&self.direct, solid, column)));
+                plan.contest(false, shows, floor.is_some(), rest)
             }
-            None => self.show(progress, columns, Show::Unknown),
         }
     }
 
-    /// Columns that all meet the same solids, and the surface where it is given.
-    fn first<'f>(
-        &'f self,
-        progress: &mut Progress<'_, 'f, '_>,
-        column: &Column,
-        columns: Columns,
-        met: &[usize],
-        floor: Option<&'f Floor>,
-    ) {
-        let y = progress.row.y;
-        let surface = floor.map(|floor| floor.depth_at(y));
-        match self.front(&self.direct, met, surface, y, columns) {
-            Front::Solid(solid) => {
-                self.show(
-                    progress,
-                    columns,
-                    solid_in(&self.direct.solids[solid], column),
-                );
+    /// The same where the surface is met, and no solid in front of it.
+    fn seen_of_surface(&self, floor: &Floor, column: &Column, plan: &mut Plan) -> Seen {
+        let itself = Seen::Only(Show::Paint(floor.paint));
+        let mirrored = match (column.surface_in_shadow(), &floor.mirrored) {
+            (Some(true), _) => return Seen::Only(Show::Paint(floor.in_shadow)),
+            (None, _) => return Seen::UNKNOWN,
+            (Some(false), None) => return itself,
+            (Some(false), Some(mirrored)) => mirrored,
+        };
+        let Some(met) = column.mirrored.known() else {
+            return Seen::UNKNOWN;
+        };
+        // A solid that goes through the surface may be met below it, where nothing is mirrored.
+        let goes_through = |&solid: &usize| mirrored.solids[solid].side != Side::Above;
+        match met {
+            [] => itself,
+            met if met.iter().any(goes_through) => Seen::UNKNOWN,
+            [solid] => Seen::Only(solid_in(mirrored, *solid, column)),
+            met => {
+                let shows = met
+                    .iter()
+                    .map(|&solid| (solid, solid_in(mirrored, solid, column)));
+                plan.contest(true, shows, false, itself)
             }
-            Front::Rest => match floor {
-                Some(floor) => self.surface(progress, column, columns, floor),
-                None => self.show(progress, columns, Show::Paint(&self.background)),
-            },
-            Front::Unknown => match halves(columns) {
-                Some(halves) => {
-                    for half in halves {
-                        self.first(progress, column, half, met, floor);
-                    }
-                }
-                None => self.show(progress, columns, Show::Unknown),
-            },
         }
     }
 
-    /// What is in front in all these columns, of the solids met and a surface whose depth is given from the least to the most.
-    fn front(
+    /// What a row shows where it has to decide about that, from the left.
+    fn settle(
         &self,
-        view: &Solids,
-        met: &[usize],
-        surface: Option<(f64, f64)>,
+        plan: &Plan,
+        seen: Seen,
         y: f64,
         columns: Columns,
-    ) -> Front {
-        match (met, surface) {
-            ([], _) => return Front::Rest,
-            ([solid], None) => return Front::Solid(*solid),
-            _ => {}
+        settled: &mut Vec<(Columns, Show)>,
+    ) {
+        let shows = match seen {
+            Seen::Only(shows) => shows,
+            Seen::First(contest) => {
+                let contest = plan.contest_of(contest);
+                match (self.front(&contest, y, columns), halves(columns)) {
+                    (Front::Solid(place), _) => contest.solids[place].1,
+                    (Front::Rest, _) => {
+                        return self.settle(plan, contest.rest, y, columns, settled);
+                    }
+                    (Front::Unknown, Some(halves)) => {
+                        for half in halves {
+                            self.settle(plan, seen, y, half, settled);
+                        }
+                        return;
+                    }
+                    (Front::Unknown, None) => Show::Unknown,
+                }
+            }
+        };
+        match settled.last_mut() {
+            Some((before, same)) if *same == shows => before.1 = columns.1,
+            _ => settled.push((columns, shows)),
         }
+    }
+
+    /// What is in front in all these columns.
+    fn front(&self, contest: &Contest<'_>, y: f64, columns: Columns) -> Front {
+        let view = self.solids(contest.mirrored);
+        let surface = self.floor.as_ref().filter(|_| contest.surface);
         let ends = [columns.0, columns.1 - 1].map(|column| self.screen.place(column));
-        let depth = |solid: usize| view.solids[solid].depth(y, ends);
         // The candidate is what ends first; it is in front if all others begin behind that.
-        let mut candidate = (Front::Rest, surface.map_or(f64::INFINITY, |(_, most)| most));
-        for &solid in met {
-            let (_, most) = depth(solid);
-            if most < candidate.1 {
-                candidate = (Front::Solid(solid), most);
+        let mut candidate = (
+            Front::Rest,
+            surface.map_or((f64::INFINITY, f64::INFINITY), |floor| floor.depth_at(y)),
+        );
+        let mut others_begin = f64::INFINITY;
+        for (place, &(solid, _)) in contest.solids.iter().enumerate() {
+            let solid = &view.solids[solid];
+            let (front, (begins, ends_first)) = &candidate;
+            // Of a sphere that is listed twice the first is seen.
+            if let Front::Solid(first) = front
+                && view.solids[contest.solids[*first].0].is_same_sphere(solid)
+            {
+                continue;
+            }
+            let (least, most) = solid.depth(y, ends);
+            if most < *ends_first {
+                others_begin = others_begin.min(*begins);
+                candidate = (Front::Solid(place), (least, most));
+            } else {
+                others_begin = others_begin.min(least);
             }
         }
-        let (front, most) = candidate;
-        let behind = |&other: &usize| match front {
-            Front::Solid(solid) if solid == other => true,
-            // Of a sphere that is listed twice the first is seen.
-            Front::Solid(solid)
-                if solid < other && view.solids[solid].is_same_sphere(&view.solids[other]) =>
-            {
-                true
-            }
-            _ => depth(other).0 > most,
-        };
-        let surface_is_behind = match (&front, surface) {
-            (Front::Solid(_), Some((least, _))) => least > most,
-            _ => true,
-        };
-        if surface_is_behind && most.is_finite() && met.iter().all(behind) {
+        let (front, (_, most)) = candidate;
+        if most.is_finite() && others_begin > most {
             front
         } else {
             Front::Unknown
         }
     }
 
-    /// Columns that show the surface.
-    fn surface<'f>(
-        &'f self,
-        progress: &mut Progress<'_, 'f, '_>,
-        column: &Column,
-        columns: Columns,
-        floor: &'f Floor,
-    ) {
-        let shows = match (column.surface_in_shadow(), &floor.mirrored) {
-            (Some(true), _) => Show::Paint(&floor.in_shadow),
-            (None, _) => Show::Unknown,
-            (Some(false), None) => Show::Paint(&floor.paint),
-            (Some(false), Some(mirrored)) => match column.mirrored.known() {
-                Some(met) => {
-                    return self.reflection(progress, column, columns, met, (floor, mirrored));
-                }
-                None => Show::Unknown,
-            },
-        };
-        self.show(progress, columns, shows);
+    /// The solids, or those in the mirror. Without a mirror nothing asks for these.
+    fn solids(&self, mirrored: bool) -> &Solids {
+        let in_mirror = self
+            .floor
+            .as_ref()
+            .and_then(|floor| floor.mirrored.as_ref());
+        in_mirror.filter(|_| mirrored).unwrap_or(&self.direct)
     }
 
-    /// Columns in which the surface mirrors the first of these solids.
-    fn reflection<'f>(
-        &'f self,
-        progress: &mut Progress<'_, 'f, '_>,
-        column: &Column,
-        columns: Columns,
-        met: &[usize],
-        (floor, mirrored): (&'f Floor, &'f Solids),
-    ) {
-        // A solid that goes through the surface may be met below it, where nothing is mirrored.
-        let across = met
-            .iter()
-            .any(|&solid| mirrored.solids[solid].side != Side::Above);
-        if across {
-            return self.show(progress, columns, Show::Unknown);
-        }
-        let shows = match self.front(mirrored, met, None, progress.row.y, columns) {
-            Front::Solid(solid) => solid_in(&mirrored.solids[solid], column),
-            Front::Rest => Show::Paint(&floor.paint),
-            Front::Unknown => match halves(columns) {
-                Some(halves) => {
-                    for half in halves {
-                        self.reflection(progress, column, half, met, (floor, mirrored));
-                    }
-                    return;
-                }
-                None => Show::Unknown,
-            },
-        };
-        self.show(progress, columns, shows);
-    }
-
-    /// The next columns of a row. They are written when it is known where what they show ends.
-    fn show<'f>(&'f self, progress: &mut Progress<'_, 'f, '_>, columns: Columns, shows: Show<'f>) {
-        match &mut progress.stretch {
-            Some(stretch) if stretch.shows.is(&shows) => stretch.columns.1 = columns.1,
-            _ => {
-                self.write(progress);
-                progress.stretch = Some(Stretch { columns, shows });
-            }
-        }
-    }
-
-    /// Writes what is about to be written.
-    fn write(&self, progress: &mut Progress<'_, '_, '_>) {
-        let Some(Stretch { columns, shows }) = progress.stretch.take() else {
-            return;
-        };
-        let row = &mut progress.row;
+    /// Columns that all show the same.
+    fn write(&self, row: &mut Row<'_>, columns: Columns, shows: Show, shading: &mut Shading) {
         match shows {
-            Show::Paint(paint) => row.fill(columns, paint),
-            Show::Ball(ball) => {
-                row.shade(columns, ball, self.precision, self.screen, progress.shading);
-                row.ask(progress.shading.doubts.drain(..), self.pixels);
+            Show::Paint(paint) => row.fill(columns, &self.paints[paint]),
+            Show::Ball { mirrored, solid } => {
+                if let Body::Ball(ball) = &self.solids(mirrored).solids[solid as usize].body {
+                    let paint = &self.paints[ball.in_shadow];
+                    row.shade(columns, ball, paint, self.precision, self.screen, shading);
+                    row.ask(shading.doubts.drain(..), self.pixels);
+                }
             }
             Show::Unknown => row.ask(columns.0..columns.1, self.pixels),
         }
     }
 }
 
-/// What columns show where they see a solid; `column` is one of them.
-fn solid_in<'f>(solid: &'f Solid, column: &Column) -> Show<'f> {
-    match &solid.body {
-        Body::Flat(paint) => Show::Paint(paint),
-        Body::Ball(ball) => Show::Ball(ball),
+/// What a column shows where it sees a solid.
+fn solid_in(view: &Solids, solid: usize, column: &Column) -> Show {
+    match &view.solids[solid].body {
+        Body::Flat(paint) => Show::Paint(*paint),
+        Body::Ball(_) => Show::Ball {
+            mirrored: view.mirrored,
+            solid: solid as u32,
+        },
         Body::Facets(facets, pairs) => match last_entered(pairs, column) {
             Some(last) => facet_in(&facets[last], column),
             None => Show::Unknown,
@@ -418,21 +385,21 @@ fn solid_in<'f>(solid: &'f Solid, column: &Column) -> Show<'f> {
     }
 }
 
-/// What they show where they see a face.
-fn facet_in<'f>(facet: &'f Facet, column: &Column) -> Show<'f> {
+/// What it shows where it sees a face.
+fn facet_in(facet: &Facet, column: &Column) -> Show {
     if facet.turned_away {
-        return Show::Paint(&facet.in_shadow);
+        return Show::Paint(facet.in_shadow);
     }
     let mut all_known = true;
     for shadow in facet.shadows.clone() {
         match column.holds(shadow) {
-            Some(true) => return Show::Paint(&facet.in_shadow),
+            Some(true) => return Show::Paint(facet.in_shadow),
             Some(false) => {}
             None => all_known = false,
         }
     }
     if all_known {
-        Show::Paint(&facet.lit)
+        Show::Paint(facet.lit)
     } else {
         Show::Unknown
     }
@@ -453,10 +420,9 @@ impl Floor {
     fn new(
         picture: &Picture<'_, Bounded>,
         floor: &pixel::Floor<Bounded>,
-        color: &dyn Fn(Decision) -> [f32; 3],
-        screen: Screen,
-        borders: &mut Borders,
+        parts: &mut Parts<'_>,
     ) -> Floor {
+        let screen = parts.screen;
         let zero = Bounded::exact(0.0);
         let [one, third] = [1.0, 3.0].map(|x| Bounded::exact(1.0) / Bounded::exact(x));
         // An eye ray reaches the surface at t = Y/3 − (N/2) · height, and z = Z − 10 t there.
@@ -484,26 +450,27 @@ impl Floor {
         // seen, and not the surface.
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
-        let paint = |decision| Paint::new(decision, color(decision));
         let rows = floor.extent.rows(screen.size);
         let outline = Shape::new(sides.into(), None, screen);
-        borders.add(outline.within(rows), Border::Surface);
+        parts.borders.add(outline.within(rows), Border::Surface);
         let casters = 0..solids as u16;
         for shadow in solids::shadows_on(&sheet, &picture.view, casters, is_ahead, screen) {
-            borders.add(shadow.within(rows), Border::ShadowOnSurface);
+            parts
+                .borders
+                .add(shadow.within(rows), Border::ShadowOnSurface);
         }
         Floor {
             mirrored: floor
                 .mirror
                 .as_ref()
-                .map(|mirror| Solids::new(picture, &mirror.view, true, color, screen, borders)),
+                .map(|mirror| Solids::new(picture, &mirror.view, true, parts)),
             depth: [
                 -height.value(),
                 third.value(),
                 (height.error() + 8.0 * U * magnitude) * MORE,
             ],
-            paint: paint(Decision::Surface),
-            in_shadow: paint(Decision::SurfaceInShadow),
+            paint: parts.paints.of(Decision::Surface),
+            in_shadow: parts.paints.of(Decision::SurfaceInShadow),
         }
     }
 

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4};
 
 use super::ball::{Ball, Form, Stretch, ZONES};
+use super::paint::{Paint, fill};
 use super::shape::{MORE, Screen, U, places};
 use super::solids::ShadedBall;
 use crate::number::Bounded;
@@ -46,6 +47,8 @@ pub(super) struct Run<'r> {
     pub(super) from: u32,
     pub(super) samples: &'r mut [f32],
     pub(super) decisions: Option<&'r mut [Decision]>,
+    /// What pixels in shadow show.
+    pub(super) in_shadow: &'r Paint,
     pub(super) shading: &'r mut Shading,
 }
 
@@ -59,7 +62,7 @@ impl Run<'_> {
         if let Some(decisions) = &mut self.decisions {
             for (i, decision) in decisions[pixels].iter_mut().enumerate() {
                 *decision = if in_shadow >> i & 1 == 1 {
-                    shaded.in_shadow.decision
+                    self.in_shadow.decision
                 } else {
                     shaded.lit
                 };
@@ -104,7 +107,7 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
         let all = u64::MAX >> (64 - here);
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
-            fill(simd, samples, &shaded.in_shadow);
+            fill(simd, samples, run.in_shadow);
         } else {
             let (low_lower, low_upper) = lit(simd, &shaded.ball, m, &low);
             let (high_lower, high_upper) = lit(simd, &shaded.ball, m, &high);
@@ -115,7 +118,7 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
                 let upper = low_upper[i].narrow(high_upper[i]);
                 known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
                 // + 0 turns −0 into +0.
-                let shadow = S::f32s::splat(simd, shaded.in_shadow.samples[i]);
+                let shadow = S::f32s::splat(simd, run.in_shadow.color()[i]);
                 channels[i] = dark.select(shadow, upper + zero);
             }
             let [red, green, blue] = &channels;
@@ -321,61 +324,5 @@ impl Caster {
             reach: reach.value(),
             errors,
         }))
-    }
-}
-
-/// What many pixels show, and their colour as it lies in memory: the same pixel again and again.
-pub(super) struct Paint {
-    pub(super) decision: Decision,
-    /// Three vectors hold a whole number of pixels, of any width up to a third of this.
-    samples: [f32; 3 * 16],
-}
-
-impl Paint {
-    pub(super) fn new(decision: Decision, color: [f32; 3]) -> Paint {
-        Paint {
-            decision,
-            samples: std::array::from_fn(|i| color[i % 3]),
-        }
-    }
-
-    pub(super) fn color(&self) -> [f32; 3] {
-        [self.samples[0], self.samples[1], self.samples[2]]
-    }
-}
-
-/// Fills samples with a colour.
-#[inline(always)]
-pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
-    if samples.len() >= 3 * S::f32s::LEN {
-        fill_by::<S, S::f32s>(simd, samples, paint);
-    } else if samples.len() >= 3 * 4 {
-        fill_by::<S, f32x4<S>>(simd, samples, paint);
-    } else {
-        for (sample, color) in samples.iter_mut().zip(&paint.samples) {
-            *sample = *color;
-        }
-    }
-}
-
-/// Fills no fewer samples than three vectors hold.
-#[inline(always)]
-fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
-    let width = V::LEN;
-    let first = V::from_slice(simd, &paint.samples[..width]);
-    let second = V::from_slice(simd, &paint.samples[width..2 * width]);
-    let third = V::from_slice(simd, &paint.samples[2 * width..3 * width]);
-    let last = samples.len() - 3 * width;
-    let mut at = 0;
-    loop {
-        let block = &mut samples[at..at + 3 * width];
-        first.store_slice(&mut block[..width]);
-        second.store_slice(&mut block[width..2 * width]);
-        third.store_slice(&mut block[2 * width..]);
-        if at == last {
-            return;
-        }
-        // The last block may lie on part of the one before it.
-        at = (at + 3 * width).min(last);
     }
 }

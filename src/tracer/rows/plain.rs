@@ -85,7 +85,7 @@ fn put<S: Simd>(
 ) {
     let here = S::f32s::LEN.min(run.samples.len() / 3 - *first);
     let dark = S::mask32s::from_bitmask(simd, in_shadow);
-    for (channel, &shadow) in channels.iter_mut().zip(&shaded.in_shadow.color()) {
+    for (channel, &shadow) in channels.iter_mut().zip(&run.in_shadow.color()) {
         *channel = dark.select(S::f32s::splat(simd, shadow), *channel + 0.0);
     }
     let samples = &mut run.samples[3 * *first..3 * (*first + here)];

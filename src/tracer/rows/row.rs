@@ -2,7 +2,8 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::lanes::{self, Paint, Run, Shading};
+use super::lanes::{self, Run, Shading};
+use super::paint::{self, Paint};
 use super::shape::Screen;
 use super::solids::ShadedBall;
 use super::{Precision, plain};
@@ -73,7 +74,7 @@ impl Row<'_> {
 
     fn write(&mut self, (from, to): Columns, paint: &Paint) {
         let samples = &mut self.samples[3 * from as usize..3 * to as usize];
-        dispatch!(self.level, simd => lanes::fill(simd, samples, paint));
+        dispatch!(self.level, simd => paint::fill(simd, samples, paint));
     }
 
     /// A sphere. What is left in doubt is in `shading`.
@@ -81,6 +82,7 @@ impl Row<'_> {
         &mut self,
         columns: Columns,
         shaded: &ShadedBall,
+        in_shadow: &Paint,
         precision: Precision,
         screen: Screen,
         shading: &mut Shading,
@@ -99,6 +101,7 @@ impl Row<'_> {
             from: columns.0,
             samples: &mut self.samples[3 * range.start..3 * range.end],
             decisions: self.decisions.as_mut().map(|all| &mut all[range]),
+            in_shadow,
             shading,
         };
         dispatch!(self.level, simd => match precision {

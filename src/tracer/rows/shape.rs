@@ -205,8 +205,8 @@ impl HalfPlane {
             possible: [0; ROWS],
             certain: [0; ROWS],
         };
-        for row in 0..ROWS {
-            let y = y + PLACES[row];
+        for (row, place) in PLACES.iter().enumerate() {
+            let y = y + place;
             let g = self.constant.value() + self.row.value() * y;
             let known = if g > self.error {
                 Some(true)
@@ -226,8 +226,8 @@ impl HalfPlane {
 
     /// Asks the columns in doubt, from the outside in.
     fn narrow(&self, lines: &mut HalfLines, y: f64, screen: Screen) {
-        for row in 0..ROWS {
-            let y = y + PLACES[row];
+        for (row, place) in PLACES.iter().enumerate() {
+            let y = y + place;
             let (possible, certain) = (&mut lines.possible[row], &mut lines.certain[row]);
             while *possible != *certain {
                 let column = if lines.rightward {
@@ -497,7 +497,7 @@ impl Shape {
 }
 
 /// Y of neighbouring rows and X of neighbouring columns, from the first.
-pub(super) const PLACES: [f64; 8] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
+const PLACES: [f64; ROWS] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
 
 /// As many of them as there are lanes, from one on.
 #[inline(always)]

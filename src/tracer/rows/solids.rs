@@ -3,8 +3,10 @@
 use std::iter;
 use std::ops::Range;
 
+use super::Parts;
 use super::ball::Ball;
-use super::lanes::{Caster, Paint};
+use super::lanes::Caster;
+use super::paint::PaintNumber;
 use super::shape::{Ellipse, HalfPlane, MORE, Off, Screen, Shape, Sheet, U};
 use super::sweep::{Border, Borders};
 use crate::number::{Bounded, Real};
@@ -34,7 +36,7 @@ pub(super) struct Solid {
 /// How its pixels are coloured.
 pub(super) enum Body {
     /// All alike.
-    Flat(Paint),
+    Flat(PaintNumber),
     Ball(Box<ShadedBall>),
     Facets(Vec<Facet>, Vec<Pair>),
     /// Each is to be asked for.
@@ -48,13 +50,13 @@ pub(super) struct ShadedBall {
     pub(super) casters: Vec<Caster>,
     /// Its decision in the light.
     pub(super) lit: Decision,
-    pub(super) in_shadow: Paint,
+    pub(super) in_shadow: PaintNumber,
 }
 
 /// A face that eye rays enter.
 pub(super) struct Facet {
-    pub(super) lit: Paint,
-    pub(super) in_shadow: Paint,
+    pub(super) lit: PaintNumber,
+    pub(super) in_shadow: PaintNumber,
     /// Whether it is in shadow where nothing else throws one.
     pub(super) turned_away: bool,
     /// The borders of the shadows on it.
@@ -88,10 +90,9 @@ impl Solids {
         picture: &Picture<'_, Bounded>,
         view: &View<Bounded>,
         mirrored: bool,
-        color: &dyn Fn(Decision) -> [f32; 3],
-        screen: Screen,
-        borders: &mut Borders,
+        parts: &mut Parts<'_>,
     ) -> Solids {
+        let screen = parts.screen;
         let (scene, stage) = (picture.scene, picture.stage);
         let mut all = Solids {
             mirrored,
@@ -122,9 +123,9 @@ impl Solids {
         if stage != Stage::Tetrahedron {
             for (index, sphere) in view.spheres.iter().enumerate() {
                 let ellipse = Ellipse::outline(sphere.center, sphere.radius, screen);
-                let paint = |in_shadow| {
+                let mut paint = |in_shadow| {
                     let decision = all.decision(index as u16, None, in_shadow);
-                    Paint::new(decision, color(decision))
+                    parts.paints.of(decision)
                 };
                 let body = if stage == Stage::Spheres {
                     Body::Flat(paint(false))
@@ -154,7 +155,7 @@ impl Solids {
                         body,
                     },
                     Shape::new(Vec::new(), Some(ellipse), screen).within(rows),
-                    borders,
+                    &mut parts.borders,
                 );
             }
         }
@@ -181,15 +182,15 @@ impl Solids {
                     } else {
                         Vec::new()
                     };
-                    let paint = |in_shadow| {
+                    let mut paint = |in_shadow| {
                         let decision = all.decision(index as u16, Some(face as u8), in_shadow);
-                        Paint::new(decision, color(decision))
+                        parts.paints.of(decision)
                     };
                     facets.push(Facet {
                         lit: paint(false),
                         in_shadow: paint(all.shadows),
                         turned_away,
-                        shadows: borders.add_details(shadows.into_iter(), rows),
+                        shadows: parts.borders.add_details(shadows.into_iter(), rows),
                     });
                 }
                 let place = |face: usize| entered.iter().position(|&other| other == face);
@@ -202,7 +203,7 @@ impl Solids {
                         let first = Shape::new(vec![first], None, screen);
                         Some(Pair {
                             facets: (place(i)?, place(j)?),
-                            first: borders.add_details(iter::once(first), rows).start,
+                            first: parts.borders.add_details(iter::once(first), rows).start,
                         })
                     })
                     .collect();
@@ -218,7 +219,7 @@ impl Solids {
                         body,
                     },
                     outline.within(rows),
-                    borders,
+                    &mut parts.borders,
                 );
             }
         }

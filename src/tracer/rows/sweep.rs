@@ -13,13 +13,13 @@ use super::span::ROWS;
 /// What a border is of.
 #[derive(Clone, Copy)]
 pub(super) enum Border {
-    /// A solid, by its place among those seen directly, or in the mirror.
-    Direct(usize),
-    Mirrored(usize),
     Surface,
     ShadowOnSurface,
     /// Part of a solid: it is asked for where that is seen.
     Detail,
+    /// A solid, by its place among those seen directly, or in the mirror.
+    Direct(usize),
+    Mirrored(usize),
 }
 
 /// Every border of a frame. Each is known by its number.
@@ -53,35 +53,54 @@ impl Borders {
     }
 }
 
-/// How a border crosses rows: where its columns begin possibly and certainly, and where they end certainly and possibly.
-struct Crossed {
-    border: usize,
-    places: [[u32; ROWS]; 4],
+/// Whether a column is one of a border's.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Held {
+    No,
+    Unknown,
+    Yes,
 }
 
-/// In what order a border's crossings of a row come, and what it is beyond each.
-const KINDS: [Option<bool>; 4] = [None, Some(true), None, Some(false)];
+/// In what order a border's crossings of a row come, and what is beyond each.
+const KINDS: [Held; 4] = [Held::Unknown, Held::Yes, Held::Unknown, Held::No];
 
-/// Solids met in a column, in their order, and of how many it is not known.
+/// How many borders hold a column, and of how many it is not known.
+#[derive(Default)]
+struct Count([usize; 3]);
+
+impl Count {
+    fn change(&mut self, before: Held, after: Held) {
+        // Those that hold it not are counted from the first change on, which matters to nobody.
+        self.0[before as usize] = self.0[before as usize].wrapping_sub(1);
+        self.0[after as usize] = self.0[after as usize].wrapping_add(1);
+    }
+
+    /// Whether any does.
+    fn any(&self) -> Option<bool> {
+        let [_, unknown, yes] = self.0;
+        (yes > 0 || unknown == 0).then_some(yes > 0)
+    }
+}
+
+/// Solids met in a column, in their order.
 #[derive(Default)]
 pub(super) struct Met {
-    pub(super) solids: Vec<usize>,
-    unknown: usize,
+    solids: Vec<usize>,
+    count: Count,
 }
 
 impl Met {
     /// The solids, if they are known.
     pub(super) fn known(&self) -> Option<&[usize]> {
-        (self.unknown == 0).then_some(&self.solids)
+        (self.count.0[Held::Unknown as usize] == 0).then_some(&self.solids)
     }
 
-    fn change(&mut self, solid: usize, before: Option<bool>, after: Option<bool>) {
-        self.unknown += usize::from(after.is_none());
-        self.unknown -= usize::from(before.is_none());
+    fn change(&mut self, solid: usize, before: Held, after: Held) {
+        self.count.change(before, after);
         let place = self.solids.partition_point(|&other| other < solid);
-        if after == Some(true) {
+        if after == Held::Yes {
             self.solids.insert(place, solid);
-        } else if before == Some(true) {
+        } else if before == Held::Yes {
             self.solids.remove(place);
         }
     }
@@ -92,50 +111,40 @@ impl Met {
 pub(super) struct Column {
     pub(super) direct: Met,
     pub(super) mirrored: Met,
-    surface: bool,
-    surface_unknown: bool,
-    shadows: usize,
-    shadows_unknown: usize,
-    /// Whether it belongs to each border's columns.
-    held: Vec<Option<bool>>,
+    surface: Count,
+    shadows: Count,
+    /// Whether it is one of each border's.
+    held: Vec<Held>,
 }
 
 impl Column {
     /// Whether it meets the surface.
     pub(super) fn surface(&self) -> Option<bool> {
-        (!self.surface_unknown).then_some(self.surface)
+        self.surface.any()
     }
 
     /// Whether the surface is in shadow there.
     pub(super) fn surface_in_shadow(&self) -> Option<bool> {
-        match (self.shadows, self.shadows_unknown) {
-            (0, 0) => Some(false),
-            (0, _) => None,
-            _ => Some(true),
+        self.shadows.any()
+    }
+
+    /// Whether it is one of a border's.
+    pub(super) fn holds(&self, border: usize) -> Option<bool> {
+        match self.held[border] {
+            Held::No => Some(false),
+            Held::Unknown => None,
+            Held::Yes => Some(true),
         }
     }
 
-    /// Whether it belongs to a border's columns.
-    pub(super) fn holds(&self, border: usize) -> Option<bool> {
-        self.held[border]
-    }
-
-    fn change(&mut self, border: usize, of: Border, after: Option<bool>) {
+    fn change(&mut self, border: usize, of: Border, after: Held) {
         let before = std::mem::replace(&mut self.held[border], after);
         match of {
+            Border::Surface => self.surface.change(before, after),
+            Border::ShadowOnSurface => self.shadows.change(before, after),
+            Border::Detail => {}
             Border::Direct(solid) => self.direct.change(solid, before, after),
             Border::Mirrored(solid) => self.mirrored.change(solid, before, after),
-            Border::Surface => {
-                self.surface = after == Some(true);
-                self.surface_unknown = after.is_none();
-            }
-            Border::ShadowOnSurface => {
-                self.shadows += usize::from(after == Some(true));
-                self.shadows -= usize::from(before == Some(true));
-                self.shadows_unknown += usize::from(after.is_none());
-                self.shadows_unknown -= usize::from(before.is_none());
-            }
-            Border::Detail => {}
         }
     }
 }
@@ -146,9 +155,14 @@ pub(super) struct Sweep {
     pub(super) column: Column,
     /// The first of the rows that are crossed.
     first: Option<u32>,
-    crossed: Vec<Crossed>,
-    /// The crossings of a row, from the left: the column, which of `crossed` it is, and its kind, from the highest bits down.
+    /// The borders that cross them.
+    crossed: Vec<usize>,
+    /// Four times for each of these: where its columns begin possibly and certainly, and where they end certainly and possibly.
+    places: Vec<[u32; ROWS]>,
+    /// The crossings of a row, from the left: the column in the upper half, and in the lower which of `places` it is.
     crossings: Vec<u64>,
+    /// Whether there are columns before each crossing, and after the last.
+    gaps: Vec<bool>,
 }
 
 impl Sweep {
@@ -156,40 +170,65 @@ impl Sweep {
     pub(super) fn begin(&mut self, borders: &Borders) {
         self.first = None;
         self.column.held.clear();
-        self.column.held.resize(borders.of.len(), Some(false));
+        self.column.held.resize(borders.of.len(), Held::No);
     }
 
-    /// Goes to the left end of a row.
-    pub(super) fn enter(&mut self, row: u32, borders: &Borders, level: Level, screen: Screen) {
+    /// Goes to the left end of a row. Returns whether other borders are crossed than in the row that was entered last, or in another
+    /// order, or with columns between others of them.
+    pub(super) fn enter(
+        &mut self,
+        row: u32,
+        borders: &Borders,
+        level: Level,
+        screen: Screen,
+    ) -> bool {
         let first = row - row % ROWS as u32;
-        if self.first != Some(first) {
+        let mut is_new = self.first != Some(first);
+        if is_new {
             self.first = Some(first);
-            dispatch!(level, simd => cross(simd, borders, first, screen, &mut self.crossed));
+            self.crossed.clear();
+            self.places.clear();
+            dispatch!(level, simd => self.cross(simd, borders, first, screen));
             self.crossings.clear();
-            for (number, crossed) in self.crossed.iter().enumerate() {
-                let [possible, certain, certain_end, possible_end] = &crossed.places;
-                let is_certain = possible == certain && certain_end == possible_end;
+            for (number, places) in self.places.chunks_exact(4).enumerate() {
+                let is_certain = places[0] == places[1] && places[2] == places[3];
                 let kinds: &[u64] = if is_certain { &[1, 3] } else { &[0, 1, 2, 3] };
-                let number = (number as u64) << 2;
+                let number = 4 * number as u64;
                 self.crossings
-                    .extend(kinds.iter().map(|kind| number | kind));
+                    .extend(kinds.iter().map(|kind| number + kind));
             }
+            self.gaps.clear();
+            self.gaps.resize(self.crossings.len() + 1, false);
         }
         let row = (row - first) as usize;
-        for crossing in &mut self.crossings {
-            let at = *crossing & u64::from(u32::MAX);
-            let place = self.crossed[(at >> 2) as usize].places[(at & 3) as usize][row];
-            *crossing = u64::from(place) << 32 | at;
-        }
-        for i in 1..self.crossings.len() {
-            let crossing = self.crossings[i];
+        for i in 0..self.crossings.len() {
+            let at = self.crossings[i] & u64::from(u32::MAX);
+            let place = self.places[at as usize][row];
+            let crossing = u64::from(place) << 32 | at;
             let mut to = i;
             while to > 0 && self.crossings[to - 1] > crossing {
                 self.crossings[to] = self.crossings[to - 1];
                 to -= 1;
+                is_new = true;
             }
             self.crossings[to] = crossing;
         }
+        let mut from = 0;
+        for (i, gap) in self.gaps.iter_mut().enumerate() {
+            let to = match self.crossings.get(i) {
+                Some(crossing) => (crossing >> 32) as u32,
+                None => screen.size,
+            };
+            is_new |= *gap != (from < to);
+            *gap = from < to;
+            from = to;
+        }
+        is_new
+    }
+
+    /// Whether there are columns before a crossing, or after the last.
+    pub(super) fn has_columns_before(&self, crossing: usize) -> bool {
+        self.gaps[crossing]
     }
 
     /// How many crossings the row has.
@@ -197,39 +236,31 @@ impl Sweep {
         self.crossings.len()
     }
 
-    /// The column of a crossing.
-    pub(super) fn place(&self, crossing: usize) -> u32 {
-        (self.crossings[crossing] >> 32) as u32
+    /// The column of a crossing; none after the last.
+    pub(super) fn place(&self, crossing: usize) -> Option<u32> {
+        let crossing = self.crossings.get(crossing)?;
+        Some((crossing >> 32) as u32)
     }
 
     /// Goes over a crossing.
     pub(super) fn pass(&mut self, crossing: usize, borders: &Borders) {
         let at = self.crossings[crossing] as u32;
-        let border = self.crossed[(at >> 2) as usize].border;
+        let border = self.crossed[(at >> 2) as usize];
         let after = KINDS[(at & 3) as usize];
         self.column.change(border, borders.of[border], after);
     }
-}
 
-/// How the borders cross the rows from `first` on.
-#[inline(always)]
-fn cross<S: Simd>(
-    simd: S,
-    borders: &Borders,
-    first: u32,
-    screen: Screen,
-    crossed: &mut Vec<Crossed>,
-) {
-    crossed.clear();
-    for (border, &(from, to)) in borders.rows.iter().enumerate() {
-        if from < first + ROWS as u32 && to > first {
-            let spans = borders.shapes[border].cross(simd, first, screen);
-            if !spans.is_none() {
-                let ([a, d], [b, c]) = (spans.possible, spans.certain);
-                crossed.push(Crossed {
-                    border,
-                    places: [a, b, c, d],
-                });
+    /// How the borders cross the rows from `first` on.
+    #[inline(always)]
+    fn cross<S: Simd>(&mut self, simd: S, borders: &Borders, first: u32, screen: Screen) {
+        for (border, &(from, to)) in borders.rows.iter().enumerate() {
+            if from < first + ROWS as u32 && to > first {
+                let spans = borders.shapes[border].cross(simd, first, screen);
+                if !spans.is_none() {
+                    let ([a, d], [b, c]) = (spans.possible, spans.certain);
+                    self.crossed.push(border);
+                    self.places.extend([a, b, c, d]);
+                }
             }
         }
     }
