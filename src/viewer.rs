@@ -6,6 +6,7 @@
 
 mod action;
 mod app;
+mod clipboard;
 mod comparison;
 mod error;
 mod frames;

@@ -597,7 +597,7 @@ fn information_and_the_pixel_under_the_pointer_come_and_go() {
 
 #[test]
 fn a_click_works_the_pixel_through_as_explain_does() {
-    let Some(session) = Session::start(&["view", "--stage", "6"]) else {
+    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
         return;
     };
     session.shows(500, Stage::Reflection, 0.0);
@@ -605,12 +605,22 @@ fn a_click_works_the_pixel_through_as_explain_does() {
     session.click(LEFT_BUTTON);
     let tracer = Tracer::new(Kernel::default(), 1).unwrap();
     let text = tracer.explain(&Scene::builtin(), Stage::Reflection, 0.0, 500, (255, 202));
-    for line in text.unwrap().lines() {
+    let text = text.unwrap();
+    for line in text.lines() {
         assert_eq!(session.program.line(line), line);
     }
     session.covers(500, Stage::Reflection, 0.0, "viewer-inspected.png");
+    session.press_ctrl(u32::from('c'));
+    assert_eq!(session.clipboard(), text);
+    session.screenshot("viewer-copied.png");
     session.press(ESCAPE);
     session.shows(500, Stage::Reflection, 0.0);
+    // Nothing is there to be copied: what was copied stays.
+    session.press_ctrl(u32::from('c'));
+    session.covers(500, Stage::Reflection, 0.0, "viewer-nothing-to-copy.png");
+    assert_eq!(session.clipboard(), text);
+    session.type_keys("q");
+    session.program.left();
 }
 
 #[test]

@@ -21,6 +21,7 @@ pub(super) enum Action {
     Errors,
     NextKernel,
     Information,
+    Copy,
     Fit,
     FullScreen,
     Menu,
@@ -43,6 +44,8 @@ struct Binding {
     places: &'static [KeyCode],
     /// Whether Shift must be down, must not be, or does not matter.
     shift: Option<bool>,
+    /// Whether Ctrl must be down; else it must not be.
+    ctrl: bool,
     /// Whether holding the key down repeats it.
     repeats: bool,
 }
@@ -57,6 +60,7 @@ impl Binding {
             named: &[],
             places: &[],
             shift: None,
+            ctrl: false,
             repeats: false,
         }
     }
@@ -172,6 +176,12 @@ const BINDINGS: &[Binding] = &[
         )
     },
     Binding {
+        characters: &['c'],
+        places: &[C::KeyC],
+        ctrl: true,
+        ..Binding::new("Ctrl+C", "copy the text of the clicked pixel", A::Copy)
+    },
+    Binding {
         characters: &['z'],
         places: &[C::KeyZ],
         ..Binding::new("Z", "the whole picture again, after wheel and drag", A::Fit)
@@ -260,7 +270,7 @@ impl Press<'_> {
     /// report such keys at false places. Otherwise its place comes first: the digit row of a French keyboard means `&é"'(-è`, a
     /// keypad without NumLock means arrows, and the letters of a Cyrillic keyboard are none of ours.
     pub(super) fn action(&self) -> Option<Action> {
-        let others = ModifiersState::CONTROL | ModifiersState::ALT | ModifiersState::SUPER;
+        let others = ModifiersState::ALT | ModifiersState::SUPER;
         if self.modifiers.intersects(others) {
             return None;
         }
@@ -281,9 +291,10 @@ impl Press<'_> {
     }
 
     fn find(&self, matches: impl Fn(&Binding) -> bool) -> Option<&'static Binding> {
-        let shift = self.modifiers.shift_key();
+        let (shift, ctrl) = (self.modifiers.shift_key(), self.modifiers.control_key());
         BINDINGS
             .iter()
+            .filter(|binding| binding.ctrl == ctrl)
             .filter(|binding| binding.shift.is_none_or(|wanted| wanted == shift))
             .find(|binding| matches(binding))
     }
@@ -458,6 +469,14 @@ mod tests {
 
     #[test]
     fn keys_of_the_desktop_are_not_ours() {
+        let ctrl = |meaning, place| {
+            let (location, ctrl) = (KeyLocation::Standard, ModifiersState::CONTROL);
+            held(character(meaning), place, location, ctrl)
+        };
+        assert_eq!(ctrl("c", C::KeyC), Some(A::Copy));
+        assert_eq!(ctrl("с", C::KeyC), Some(A::Copy), "a Cyrillic keyboard");
+        assert_eq!(ctrl("s", C::KeyS), None);
+        assert_eq!(press(character("c"), C::KeyC), None);
         for other in [
             ModifiersState::CONTROL,
             ModifiersState::ALT,
@@ -481,6 +500,7 @@ mod tests {
             let press = |repeat| {
                 let mut modifiers = ModifiersState::empty();
                 modifiers.set(ModifiersState::SHIFT, binding.shift == Some(true));
+                modifiers.set(ModifiersState::CONTROL, binding.ctrl);
                 Press {
                     meaning: &meaning,
                     place: PhysicalKey::Code(C::F35),

@@ -11,6 +11,7 @@ use crate::image::Format;
 use crate::{Kernel, Stage};
 
 use super::action::Action;
+use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing, Errors};
 use super::frames::Meter;
 use super::information::{Times, information, name_pixel};
@@ -64,6 +65,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         errors: None,
         shown: None,
         view: None,
+        clipboard: None,
         uploaded: false,
         overdue: false,
         next_frame: started,
@@ -102,6 +104,8 @@ struct App<'a> {
     shown: Option<Traced>,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     view: Option<View>,
+    /// As long as there is a window.
+    clipboard: Option<Clipboard>,
     /// The texture holds the picture.
     uploaded: bool,
     /// The window is drawn again without waiting for the picture that is on its way: it took too long, or something else changed.
@@ -425,6 +429,7 @@ impl App<'_> {
                 self.sheet.information = !self.sheet.information;
                 self.touch();
             }
+            Action::Copy => self.copy(),
             Action::Menu => {
                 let place = self.pointer.place();
                 self.toggle_menu(place);
@@ -513,6 +518,22 @@ impl App<'_> {
         self.tracing.save(frame, format);
     }
 
+    /// Copies the text of the pixel that was clicked on.
+    fn copy(&mut self) {
+        let (Some((_, text)), Some(clipboard)) = (&self.sheet.inspected, &mut self.clipboard)
+        else {
+            self.sheet
+                .say("nothing to copy: click on a pixel first".to_owned());
+            return self.touch();
+        };
+        let said = match clipboard.copy(text.clone()) {
+            Ok(()) => "copied the text of the clicked pixel".to_owned(),
+            Err(error) => format!("not copied: {error}"),
+        };
+        self.sheet.say(said);
+        self.touch();
+    }
+
     /// Writes stage, kernel, α and frames a second into the title, where they changed.
     fn retitle(&mut self) {
         let Some(view) = &self.view else {
@@ -539,6 +560,7 @@ impl App<'_> {
         let view = View::open(event_loop, self.size)?;
         view.window().request_redraw();
         self.frame_time = view.frame_time();
+        self.clipboard = Some(Clipboard::beside(view.window()));
         self.view = Some(view);
         self.uploaded = false;
         self.retitle();

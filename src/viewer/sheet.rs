@@ -111,7 +111,8 @@ impl Sheet {
             panel(context, "information", Align2::LEFT_TOP, |ui| say(ui, &top));
         }
         if let Some((_, text)) = &self.inspected {
-            let text = format!("{text}(also on standard output; Esc closes)");
+            let text =
+                format!("{text}(Ctrl+C copies this, Esc closes it; also on standard output)");
             panel(context, "inspected", Align2::LEFT_BOTTOM, |ui| {
                 ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
                 ui.label(RichText::new(text).monospace().size(10.0));

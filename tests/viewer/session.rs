@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 use firsthit::{Image, Stage};
 use tempfile::TempDir;
 use x11rb::connection::Connection as _;
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConfigureWindowAux,
-    ConnectionExt as _, EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
-    MOTION_NOTIFY_EVENT, MapState, PropMode, Window,
+    ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT,
+    KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, MapState, PropMode, Window, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -22,6 +23,7 @@ use super::program::{Program, wait_for};
 use super::xvfb::Xvfb;
 
 pub const SHIFT: u32 = 0xffe1;
+pub const CONTROL: u32 = 0xffe3;
 pub const SPACE: u32 = 0x20;
 pub const ESCAPE: u32 = 0xff1b;
 pub const HOME: u32 = 0xff50;
@@ -185,10 +187,19 @@ impl Session {
 
     /// Presses the key at `keycode` while Shift is down.
     pub fn press_shifted(&self, keycode: u8) {
-        let (shift, _) = self.keycode(SHIFT);
-        self.fake(KEY_PRESS_EVENT, shift);
+        self.press_with(SHIFT, keycode);
+    }
+
+    /// Presses the key with the symbol `keysym` while Ctrl is down.
+    pub fn press_ctrl(&self, keysym: u32) {
+        self.press_with(CONTROL, self.keycode(keysym).0);
+    }
+
+    fn press_with(&self, modifier: u32, keycode: u8) {
+        let (modifier, _) = self.keycode(modifier);
+        self.fake(KEY_PRESS_EVENT, modifier);
         self.press_code(keycode);
-        self.fake(KEY_RELEASE_EVENT, shift);
+        self.fake(KEY_RELEASE_EVENT, modifier);
     }
 
     /// Types `keys`, each a character of ASCII.
@@ -196,6 +207,48 @@ impl Session {
         for key in keys.chars() {
             self.press(u32::from(key));
         }
+    }
+
+    /// The text on the clipboard, waited for, as another program gets it.
+    pub fn clipboard(&self) -> String {
+        let connection = &self.connection;
+        let window = connection.generate_id().unwrap();
+        let attributes = CreateWindowAux::new();
+        connection
+            .create_window(
+                x11rb::COPY_DEPTH_FROM_PARENT,
+                window,
+                self.root,
+                0,
+                0,
+                1,
+                1,
+                0,
+                WindowClass::INPUT_ONLY,
+                x11rb::COPY_FROM_PARENT,
+                &attributes,
+            )
+            .unwrap();
+        let (clipboard, text) = (self.atom("CLIPBOARD"), self.atom("UTF8_STRING"));
+        wait_for("text on the clipboard", || {
+            let now = x11rb::CURRENT_TIME;
+            connection
+                .convert_selection(window, clipboard, text, text, now)
+                .unwrap();
+            connection.flush().unwrap();
+            let answer = wait_for("the clipboard's answer", || {
+                match connection.poll_for_event().unwrap()? {
+                    Event::SelectionNotify(answer) => Some(answer),
+                    _ => None,
+                }
+            });
+            let property = connection
+                .get_property(true, window, text, text, 0, u32::MAX)
+                .unwrap()
+                .reply()
+                .unwrap();
+            (answer.property == text).then(|| String::from_utf8(property.value).unwrap())
+        })
     }
 
     /// Moves the pointer to the pixel of the window at `x` and `y`, counted from its top left corner.

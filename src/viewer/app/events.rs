@@ -22,11 +22,13 @@ impl ApplicationHandler for App<'_> {
     }
 
     fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
+        self.clipboard = None;
         self.view = None;
     }
 
     fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
         // While the display is still open.
+        self.clipboard = None;
         self.view = None;
     }
 
