@@ -28,7 +28,7 @@ use std::time::{Duration, Instant};
 
 use firsthit::camera::{ROUND, frame_angle};
 use firsthit::{Kernel, Scene, Stage, Tracer};
-use pixels::traced;
+use pixels::{letterboxed, traced};
 use program::{Program, wait_for};
 use session::{
     DOWN, ENTER, ESCAPE, F1, HOME, LEFT, LEFT_BUTTON, RIGHT, RIGHT_BUTTON, SPACE, Session, UP,
@@ -536,7 +536,7 @@ fn the_menu_is_for_keys_and_mouse_and_esc_closes_it_first() {
     let six = Stage::Reflection;
     session.shows(500, six, 0.0);
     session.type_keys("m");
-    session.covers(500, six, 0.0, "viewer-menu.png");
+    session.covers(500, six, 0.0, 30, "viewer-menu.png");
     session.press(ESCAPE);
     session.shows(500, six, 0.0);
     // Five down: the fifth stage. Twice up from the top: around to the last but one.
@@ -550,24 +550,24 @@ fn the_menu_is_for_keys_and_mouse_and_esc_closes_it_first() {
     session.press(UP);
     session.press(UP);
     session.press(ENTER);
-    session.covers(500, Stage::Shadow, 0.0, "viewer-help.png");
+    session.covers(500, Stage::Shadow, 0.0, 30, "viewer-help.png");
     session.press(ESCAPE);
     session.shows(500, Stage::Shadow, 0.0);
     // The first row lies just below the pointer.
     session.point(20, 20);
     session.click(RIGHT_BUTTON);
-    session.covers(500, Stage::Shadow, 0.0, "viewer-menu-by-mouse.png");
+    session.covers(500, Stage::Shadow, 0.0, 30, "viewer-menu-by-mouse.png");
     session.point(60, 34);
     session.click(LEFT_BUTTON);
     session.shows(500, Stage::Image, 0.0);
     // A click beside it takes nothing; a key does what it always does.
     session.click(RIGHT_BUTTON);
-    session.covers(500, Stage::Image, 0.0, "viewer-menu-by-mouse.png");
+    session.covers(500, Stage::Image, 0.0, 30, "viewer-menu-by-mouse.png");
     session.point(490, 490);
     session.click(LEFT_BUTTON);
     session.shows(500, Stage::Image, 0.0);
     session.press(F1);
-    session.covers(500, Stage::Image, 0.0, "viewer-help.png");
+    session.covers(500, Stage::Image, 0.0, 30, "viewer-help.png");
     session.type_keys("h6");
     session.shows(500, six, 0.0);
     session.press(ESCAPE);
@@ -586,9 +586,38 @@ fn information_and_the_pixel_under_the_pointer_come_and_go() {
     };
     session.type_keys("i");
     session.point(255, 297);
-    session.covers(500, Stage::Reflection, 0.0, "viewer-information.png");
+    session.covers(500, Stage::Reflection, 0.0, 10, "viewer-information.png");
     sleeps(&session);
     session.type_keys("i");
+    session.shows(500, Stage::Reflection, 0.0);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1]);
+}
+
+#[test]
+fn the_pixel_under_the_pointer_is_named_while_it_moves() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
+        return;
+    };
+    session.resize(700, 500);
+    let picture = traced(500, Stage::Reflection, 0.0);
+    let clean = letterboxed(&picture, 700, 500);
+    session.shows(500, Stage::Reflection, 0.0);
+    // At the top, or at the bottom where the pointer is at the top: the pixel itself is not hidden.
+    for (y, named, free) in [(297, 0..30, 30..500), (3, 470..500, 0..470)] {
+        session.point(355, y);
+        wait_for("the pixel's name", || {
+            let shown = session.pixels()?;
+            let far = shown.differences(&clean, free.clone());
+            (far == 0 && shown.differences(&clean, named.clone()) > 4000).then_some(())
+        });
+        session.screenshot(&format!("viewer-named-{y}.png"));
+    }
+    session.shows(500, Stage::Reflection, 0.0);
+    sleeps(&session);
+    // Beside the picture there is no pixel to name, and none any more once the pointer has left it.
+    session.point(20, 250);
     session.shows(500, Stage::Reflection, 0.0);
     session.type_keys("q");
     let [traces, uploads, _] = session.program.left();
@@ -609,7 +638,7 @@ fn a_click_works_the_pixel_through_as_explain_does() {
     for line in text.lines() {
         assert_eq!(session.program.line(line), line);
     }
-    session.covers(500, Stage::Reflection, 0.0, "viewer-inspected.png");
+    session.covers(500, Stage::Reflection, 0.0, 30, "viewer-inspected.png");
     session.press_ctrl(u32::from('c'));
     assert_eq!(session.clipboard(), text);
     session.screenshot("viewer-copied.png");
@@ -617,7 +646,7 @@ fn a_click_works_the_pixel_through_as_explain_does() {
     session.shows(500, Stage::Reflection, 0.0);
     // Nothing is there to be copied: what was copied stays.
     session.press_ctrl(u32::from('c'));
-    session.covers(500, Stage::Reflection, 0.0, "viewer-nothing-to-copy.png");
+    session.covers(500, Stage::Reflection, 0.0, 1, "viewer-nothing-to-copy.png");
     assert_eq!(session.clipboard(), text);
     session.type_keys("q");
     session.program.left();
@@ -630,7 +659,7 @@ fn what_was_saved_is_said_in_the_window_for_a_while() {
     };
     session.shows(500, Stage::Reflection, 0.0);
     session.type_keys("s");
-    session.covers(500, Stage::Reflection, 0.0, "viewer-saved.png");
+    session.covers(500, Stage::Reflection, 0.0, 1, "viewer-saved.png");
     session.shows(500, Stage::Reflection, 0.0);
     sleeps(&session);
 }
@@ -741,7 +770,7 @@ fn a_dense_display_gets_the_same_pixels_and_a_menu_twice_as_large() {
     session.shows(500, Stage::Reflection, 0.0);
     session.point(20, 20);
     session.click(RIGHT_BUTTON);
-    session.covers(500, Stage::Reflection, 0.0, "viewer-menu-dense.png");
+    session.covers(500, Stage::Reflection, 0.0, 30, "viewer-menu-dense.png");
     // In the middle of the second row, 16 points below that of the first.
     session.point(100, 20 + 2 * (14 + 16));
     session.click(LEFT_BUTTON);

@@ -199,7 +199,7 @@ impl App<'_> {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
-        let message = self.sheet.expire(start);
+        let change = self.sheet.expire(start);
         let facts = self.facts();
         let Some(view) = &mut self.view else {
             return Ok(());
@@ -245,7 +245,7 @@ impl App<'_> {
             .as_ref()
             .filter(|errors| errors.is_busy())
             .map(|_| start + PATIENCE);
-        if let Some(end) = message.into_iter().chain(comparing).min() {
+        if let Some(end) = change.into_iter().chain(comparing).min() {
             event_loop.set_control_flow(ControlFlow::WaitUntil(end));
         }
         self.schedule(event_loop);
@@ -264,13 +264,12 @@ impl App<'_> {
         if self.sheet.information {
             facts.information = information(shown, self.times);
         }
-        if self.sheet.names_pixels() {
-            facts.pixel = self
-                .pointer
-                .place()
-                .and_then(|place| view.picture_pixel(place))
-                .map(|pixel| name_pixel(&shown.image, pixel))
-                .unwrap_or_default();
+        if self.sheet.names_pixels()
+            && let Some(place) = self.pointer.place()
+            && let Some(pixel) = view.picture_pixel(place)
+        {
+            facts.pixel = name_pixel(&shown.image, pixel);
+            facts.pointer = Some(view.in_points(place));
         }
         if let Some((pixel, _)) = &self.sheet.inspected {
             facts.inspected = Some(view.square_in_points(*pixel));

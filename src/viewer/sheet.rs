@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui::{
-    Align2, Area, Button, Color32, Context, Frame, Id, Rect, RichText, ScrollArea, Stroke,
+    Align2, Area, Button, Color32, Context, Frame, Id, Pos2, Rect, RichText, ScrollArea, Stroke,
     StrokeKind, Ui,
 };
 use glam::UVec2;
@@ -14,8 +14,11 @@ use super::action::{Action, key_table, rows};
 use super::comparison::WRONG;
 use super::menu::Menu;
 
-/// How long a message stays.
-const MESSAGE_TIME: Duration = Duration::from_secs(4);
+/// How long a message stays, and the name of the pixel on which the pointer rests.
+const READING_TIME: Duration = Duration::from_secs(4);
+
+/// Where the line that names a pixel ends, in points from the top; with room to spare.
+const LINE_HEIGHT: f32 = 32.0;
 
 /// Everything that may lie over the picture.
 #[derive(Debug, Default)]
@@ -25,6 +28,8 @@ pub(super) struct Sheet {
     pub(super) information: bool,
     /// An inspected pixel, and its text once it is there.
     pub(super) inspected: Option<(UVec2, String)>,
+    /// The pixel under the pointer is named until then, for the pointer moved.
+    pointed: Option<Instant>,
     message: Option<(String, Instant)>,
 }
 
@@ -35,6 +40,8 @@ pub(super) struct Facts {
     pub(super) information: String,
     /// The pixel under the pointer.
     pub(super) pixel: String,
+    /// Where the pointer is, in points.
+    pub(super) pointer: Option<Pos2>,
     /// The square of the window, in points, that shows the inspected pixel.
     pub(super) inspected: Option<Rect>,
     /// What the error view says.
@@ -53,23 +60,36 @@ impl Sheet {
             && !self.help
             && !self.information
             && self.inspected.is_none()
+            && self.pointed.is_none()
             && self.message.is_none()
     }
 
     /// Whether the pixel under the pointer is named.
     pub(super) fn names_pixels(&self) -> bool {
-        self.information || self.inspected.is_some()
+        self.information || self.inspected.is_some() || self.pointed.is_some()
+    }
+
+    /// Names the pixel under the pointer, which moved at `now`, for a while.
+    pub(super) fn point(&mut self, now: Instant) {
+        self.pointed = Some(now + READING_TIME);
+    }
+
+    /// Nothing is pointed at any more.
+    pub(super) fn unpoint(&mut self) {
+        self.pointed = None;
     }
 
     /// Says `text` for a while.
     pub(super) fn say(&mut self, text: String) {
-        self.message = Some((text, Instant::now() + MESSAGE_TIME));
+        self.message = Some((text, Instant::now() + READING_TIME));
     }
 
-    /// Takes an old message away; when the present one will be old.
+    /// Takes away what was there for a while; when the next of it goes.
     pub(super) fn expire(&mut self, now: Instant) -> Option<Instant> {
         self.message.take_if(|(_, end)| *end <= now);
-        self.message.as_ref().map(|(_, end)| *end)
+        self.pointed.take_if(|end| *end <= now);
+        let message = self.message.as_ref().map(|(_, end)| *end);
+        message.into_iter().chain(self.pointed).min()
     }
 
     /// Closes what was opened last, if anything is open that hides the picture.
@@ -97,18 +117,22 @@ impl Sheet {
                 draw_scale(ui);
             });
         }
-        let mut top = String::new();
         if self.information {
-            top.clone_from(&facts.information);
-        }
-        if self.names_pixels() && !facts.pixel.is_empty() {
-            if !top.is_empty() {
-                top.push('\n');
-            }
-            top.push_str(&facts.pixel);
-        }
-        if !top.is_empty() {
-            panel(context, "information", Align2::LEFT_TOP, |ui| say(ui, &top));
+            panel(context, "information", Align2::LEFT_TOP, |ui| {
+                say(ui, &facts.information);
+                if !facts.pixel.is_empty() {
+                    say(ui, &facts.pixel);
+                }
+            });
+        } else if !facts.pixel.is_empty() {
+            // Not over the pixel that it names.
+            let high = facts.pointer.is_some_and(|place| place.y < LINE_HEIGHT);
+            let place = if high && self.inspected.is_none() {
+                Align2::LEFT_BOTTOM
+            } else {
+                Align2::LEFT_TOP
+            };
+            panel(context, "pixel", place, |ui| say(ui, &facts.pixel));
         }
         if let Some((_, text)) = &self.inspected {
             let text =
@@ -185,7 +209,7 @@ fn draw_scale(ui: &mut Ui) {
 }
 
 /// What the mouse does, below the keys.
-const MOUSE: &str = "wheel    zoom around the pointer\ndrag     move the picture\nclick    work a pixel through\nright    the menu";
+const MOUSE: &str = "pointer  name the pixel under it\nwheel    zoom around the pointer\ndrag     move the picture\nclick    work a pixel through\nright    the menu";
 
 fn say(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).monospace().size(12.0));

@@ -1,6 +1,7 @@
 //! What a window shows, and what it should show.
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use firsthit::image::display_byte;
@@ -18,6 +19,16 @@ pub struct Pixels {
 }
 
 impl Pixels {
+    /// How many pixels of some rows, counted from the top, are not those of `other`; all of them where the sizes differ.
+    pub fn differences(&self, other: &Pixels, rows: Range<usize>) -> usize {
+        let range = rows.start * self.width..rows.end * self.width;
+        if (self.width, self.height) != (other.width, other.height) {
+            return range.len();
+        }
+        let pairs = self.bytes[range.clone()].iter().zip(&other.bytes[range]);
+        pairs.filter(|(a, b)| a != b).count()
+    }
+
     pub fn save(&self, path: &Path) {
         let file = fs::File::create(path).unwrap();
         let mut encoder = png::Encoder::new(

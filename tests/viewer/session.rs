@@ -386,14 +386,16 @@ impl Session {
         }
     }
 
-    /// Waits until something lies over the picture of N = `size`, `stage` and `alpha`, and keeps it to be looked at.
+    /// Waits until something lies over at least so many hundredths of the window, which shows the picture of N = `size`, `stage` and
+    /// `alpha`, and keeps it to be looked at.
     #[track_caller]
-    pub fn covers(&self, size: u32, stage: Stage, alpha: f64, name: &str) {
+    pub fn covers(&self, size: u32, stage: Stage, alpha: f64, percent: usize, name: &str) {
         let picture = traced(size, stage, alpha);
         wait_for(&format!("{name} over the picture"), || {
             let (width, height) = self.size();
-            let shown = self.pixels()?;
-            (shown != letterboxed(&picture, width, height)).then_some(())
+            let uncovered = letterboxed(&picture, width, height);
+            let covered = self.pixels()?.differences(&uncovered, 0..height);
+            (100 * covered >= percent * width * height).then_some(())
         });
         self.screenshot(name);
     }

@@ -1,5 +1,7 @@
 //! The events of the window: keys, the pointer, and what the display asks for.
 
+use std::time::Instant;
+
 use egui::Pos2;
 use glam::IVec2;
 use winit::application::ApplicationHandler;
@@ -72,7 +74,13 @@ impl ApplicationHandler for App<'_> {
                     self.point(event_loop, gesture);
                 }
             }
-            WindowEvent::CursorLeft { .. } => self.pointer.left(),
+            WindowEvent::CursorLeft { .. } => {
+                self.pointer.left();
+                if self.sheet.names_pixels() {
+                    self.sheet.unpoint();
+                    self.touch();
+                }
+            }
             WindowEvent::MouseInput {
                 state,
                 button: MouseButton::Left,
@@ -133,8 +141,16 @@ impl App<'_> {
         match gesture {
             Gesture::Drag { by } => view.drag(by),
             Gesture::Wheel { steps, at } => view.zoom(steps, at),
-            Gesture::Hover if self.sheet.names_pixels() => {}
-            Gesture::Hover => return,
+            Gesture::Hover => {
+                let place = self.pointer.place();
+                let over = place.and_then(|place| view.picture_pixel(place));
+                // The first picture does not wait for what lies over it.
+                if over.is_some() && self.counts.draws > 0 {
+                    self.sheet.point(Instant::now());
+                } else if !self.sheet.names_pixels() {
+                    return;
+                }
+            }
             Gesture::Click { at } => {
                 if let (Some(pixel), Some(shown)) = (view.picture_pixel(at), &self.shown) {
                     self.tracing.explain(shown.frame, pixel);
