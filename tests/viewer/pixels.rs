@@ -3,9 +3,13 @@
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use firsthit::image::display_byte;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+use super::DEADLINE;
 
 /// The document's glClearColor, as bytes.
 const BLUE: [u8; 3] = [0, 0, 255];
@@ -42,8 +46,25 @@ impl Pixels {
     }
 }
 
+/// Waits until what is shown, if it can be seen, is what is expected.
+#[track_caller]
+pub fn wait_to_show(shown: impl Fn() -> Option<Pixels>, expected: impl Fn() -> Pixels) {
+    let start = Instant::now();
+    loop {
+        let (expected, shown) = (expected(), shown());
+        if shown.as_ref() == Some(&expected) {
+            return;
+        }
+        if start.elapsed() > DEADLINE {
+            let kept = shown.map(|shown| keep(&shown, &expected));
+            panic!("this is not what the window shows: {kept:?}");
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+}
+
 /// Keeps two pictures that should be the same, to be looked at.
-pub fn keep(shown: &Pixels, expected: &Pixels) -> [PathBuf; 2] {
+fn keep(shown: &Pixels, expected: &Pixels) -> [PathBuf; 2] {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     [(shown, "shown"), (expected, "expected")].map(|(pixels, name)| {
         let path = folder.join(format!("viewer-{}-{name}.png", std::process::id()));

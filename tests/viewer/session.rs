@@ -1,8 +1,6 @@
 //! The program in a window on an X server, a keyboard for it, and eyes on its pixels.
 
 use std::path::{Path, PathBuf};
-use std::thread;
-use std::time::{Duration, Instant};
 
 use firsthit::{Image, Stage};
 use tempfile::TempDir;
@@ -17,8 +15,7 @@ use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
-use super::DEADLINE;
-use super::pixels::{Pixels, keep, letterboxed, placed, traced};
+use super::pixels::{Pixels, letterboxed, placed, traced, wait_to_show};
 use super::program::{Program, wait_for};
 use super::xvfb::Xvfb;
 
@@ -370,20 +367,13 @@ impl Session {
     /// Waits until the window shows what a window of its width and height should.
     #[track_caller]
     fn shows_pixels(&self, expected: impl Fn(usize, usize) -> Pixels) {
-        let start = Instant::now();
-        loop {
-            let (width, height) = self.size();
-            let expected = expected(width, height);
-            let shown = self.pixels();
-            if shown.as_ref() == Some(&expected) {
-                return;
-            }
-            if start.elapsed() > DEADLINE {
-                let kept = shown.map(|shown| keep(&shown, &expected));
-                panic!("this is not what the window shows: {kept:?}");
-            }
-            thread::sleep(Duration::from_millis(10));
-        }
+        wait_to_show(
+            || self.pixels(),
+            || {
+                let (width, height) = self.size();
+                expected(width, height)
+            },
+        );
     }
 
     /// Waits until something lies over at least so many hundredths of the window, which shows the picture of N = `size`, `stage` and

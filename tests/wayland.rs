@@ -1,0 +1,111 @@
+//! The viewer on Wayland, for real: the built program under sway without a screen, keys typed by wtype, the display's pixels taken by
+//! grim and compared byte for byte with the traced picture. `.ci/wayland` brings these tools and runs this.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    unreachable_pub,
+    missing_docs,
+    reason = "a test stops at the first surprise"
+)]
+#![allow(dead_code, reason = "the tests on X11 use more of what is shared")]
+#![cfg(target_os = "linux")]
+
+#[path = "viewer/mouse.rs"]
+mod mouse;
+#[path = "viewer/pixels.rs"]
+mod pixels;
+#[path = "viewer/program.rs"]
+mod program;
+#[path = "viewer/sway.rs"]
+mod sway;
+
+use std::time::Duration;
+
+use firsthit::{Kernel, Scene, Stage, Tracer};
+use mouse::Mouse;
+use program::wait_for;
+use sway::{HEIGHT, Sway, WIDTH};
+
+/// How long anything may take that is waited for.
+const DEADLINE: Duration = Duration::from_secs(30);
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
+fn shows_stage_after_stage_as_traced() {
+    let sway = Sway::start();
+    let mut viewer = sway.open(&["view", "--stage", "6"]);
+    sway.shows(Stage::Reflection);
+    for stage in &Stage::ALL[..6] {
+        sway.type_keys(&stage.number().to_string());
+        sway.shows(*stage);
+    }
+    sway.type_keys("q");
+    let [traces, uploads, _] = viewer.left();
+    assert_eq!([traces, uploads], [7, 7]);
+}
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
+fn a_dense_display_gets_the_same_pixels() {
+    let sway = Sway::start();
+    let mut viewer = sway.open(&["view", "--stage", "6"]);
+    sway.order("output * scale 2");
+    sway.shows(Stage::Reflection);
+    sway.type_keys("q");
+    viewer.left();
+}
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
+fn a_hidden_window_answers_once_it_is_seen_again() {
+    let sway = Sway::start();
+    let mut viewer = sway.open(&["view"]);
+    for _ in 0..2 {
+        sway.order("workspace 2");
+        sway.order("workspace 1");
+        sway.type_keys("5");
+        sway.shows(Stage::Shadow);
+        sway.type_keys("7");
+    }
+    sway.order("workspace 2");
+    sway.order("[title=firsthit] kill");
+    viewer.left();
+}
+
+#[test]
+#[ignore = "needs sway, wtype, grim and wl-clipboard"]
+fn the_text_of_a_clicked_pixel_can_be_pasted() {
+    let sway = Sway::start();
+    let size = [WIDTH, HEIGHT].map(|length| length as u32);
+    let mut mouse = Mouse::new(&sway.display(), size);
+    let mut viewer = sway.open(&["view", "--stage", "6"]);
+    sway.shows(Stage::Reflection);
+    let [left, top] = size.map(|length| (length - 500) / 2);
+    mouse.point(left + 255, top + 499 - 202);
+    mouse.click();
+    let tracer = Tracer::new(Kernel::default(), 1).unwrap();
+    let text = tracer.explain(&Scene::builtin(), Stage::Reflection, 0.0, 500, (255, 202));
+    let text = text.unwrap();
+    viewer.line(text.lines().last().unwrap());
+    sway.printed("wtype", &["-M", "ctrl", "c", "-m", "ctrl"]);
+    let pasted = wait_for("text on the clipboard", || sway.pasted());
+    assert_eq!(pasted, text);
+    sway.type_keys("q");
+    viewer.left();
+}
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
+fn the_death_of_the_compositor_is_one_line() {
+    for stage in ["6", "7"] {
+        let mut sway = Sway::start();
+        let mut viewer = sway.open(&["view", "--stage", stage]);
+        sway.crash();
+        let (status, errors) = viewer.ended();
+        assert_eq!(status.code(), Some(1), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        assert!(errors.contains("the display went away"), "{errors}");
+    }
+}
