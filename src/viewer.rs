@@ -15,6 +15,7 @@ mod menu;
 mod overlay;
 mod playback;
 mod pointer;
+mod press;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
 mod sheet;

@@ -1,5 +1,6 @@
-//! What happens when: the actions, the redisplay, and what the other threads have done.
+//! What happens when: the redisplay, and what the other threads have done.
 
+mod actions;
 mod events;
 
 use std::time::{Duration, Instant};
@@ -7,7 +8,6 @@ use std::time::{Duration, Instant};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
-use crate::image::Format;
 use crate::{Kernel, Stage};
 
 use super::action::Action;
@@ -23,12 +23,6 @@ use super::sheet::{Facts, Sheet};
 use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
-
-/// α turned by an arrow key, in radians.
-const NUDGE: f64 = 0.05;
-
-/// What + and − do to the speed.
-const FASTER: f64 = 1.25;
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -397,85 +391,10 @@ impl App<'_> {
         Ok(())
     }
 
-    fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
-        match action {
-            Action::Stage(stage) if stage == self.stage => {}
-            Action::Stage(Stage::Animation) => self.stage = Stage::Animation,
-            Action::Stage(stage) => {
-                self.stage = stage;
-                self.playback.settle();
-            }
-            Action::Pause if self.stage == Stage::Animation => self.playback.toggle(),
-            Action::Pause => {}
-            Action::NextFrame => {
-                self.stop();
-                self.playback.next_frame();
-            }
-            Action::PreviousFrame => {
-                self.stop();
-                self.playback.previous_frame();
-            }
-            Action::TurnLeft => self.playback.nudge(-NUDGE),
-            Action::TurnRight => self.playback.nudge(NUDGE),
-            Action::Faster => self.playback.scale(FASTER),
-            Action::Slower => self.playback.scale(1.0 / FASTER),
-            Action::Zero => self.playback.zero(),
-            Action::SavePng => self.save(Format::Png),
-            Action::SaveExr => self.save(Format::Exr),
-            Action::Errors => self.toggle_errors(),
-            Action::NextKernel => self.next_kernel(),
-            Action::Information => {
-                self.sheet.information = !self.sheet.information;
-                self.touch();
-            }
-            Action::Copy => self.copy(),
-            Action::Menu => {
-                let place = self.pointer.place();
-                self.toggle_menu(place);
-            }
-            Action::Help => {
-                self.sheet.help = !self.sheet.help;
-                self.touch();
-            }
-            Action::Fit => {
-                if let Some(view) = &mut self.view {
-                    view.fit();
-                }
-                self.touch();
-            }
-            Action::FullScreen => {
-                if let Some(view) = &self.view {
-                    view.toggle_full_screen();
-                }
-            }
-            Action::Leave => event_loop.exit(),
-        }
-        if !self.playing() {
-            self.meter.stop();
-        }
-        self.retitle();
-        if self.playing() {
-            self.ask_for_redraw();
-        } else {
-            self.tracing.wish(self.wanted());
-        }
-    }
-
     /// Something but the picture looks different now.
     fn touch(&mut self) {
         self.overdue = true;
         self.ask_for_redraw();
-    }
-
-    /// Shows the errors of the picture, or the picture again.
-    fn toggle_errors(&mut self) {
-        self.errors = match self.errors {
-            Some(_) => None,
-            None => Some(Errors::default()),
-        };
-        self.uploaded = false;
-        self.compare();
-        self.touch();
     }
 
     /// Asks for the errors of the picture that is shown, if they are to be seen.
@@ -489,48 +408,10 @@ impl App<'_> {
         }
     }
 
-    fn next_kernel(&mut self) {
-        let kernels = Kernel::ALL.iter().cycle();
-        let next = kernels.skip_while(|&&kernel| kernel != self.kernel).nth(1);
-        self.kernel = next.copied().unwrap_or_default();
-    }
-
     fn ask_for_redraw(&self) {
         if let Some(view) = &self.view {
             view.window().request_redraw();
         }
-    }
-
-    /// Pauses the animation if it is on.
-    fn stop(&mut self) {
-        if self.stage == Stage::Animation {
-            self.playback.pause();
-        }
-    }
-
-    fn save(&self, format: Format) {
-        let frame = match &self.shown {
-            // What a person sees is what is saved, although the next picture is on its way.
-            Some(shown) if self.playing() => shown.frame,
-            _ => self.wanted(),
-        };
-        self.tracing.save(frame, format);
-    }
-
-    /// Copies the text of the pixel that was clicked on.
-    fn copy(&mut self) {
-        let (Some((_, text)), Some(clipboard)) = (&self.sheet.inspected, &mut self.clipboard)
-        else {
-            self.sheet
-                .say("nothing to copy: click on a pixel first".to_owned());
-            return self.touch();
-        };
-        let said = match clipboard.copy(text.clone()) {
-            Ok(()) => "copied the text of the clicked pixel".to_owned(),
-            Err(error) => format!("not copied: {error}"),
-        };
-        self.sheet.say(said);
-        self.touch();
     }
 
     /// Writes stage, kernel, α and frames a second into the title, where they changed.

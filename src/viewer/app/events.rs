@@ -11,9 +11,10 @@ use winit::keyboard::{Key, NamedKey};
 use winit::window::WindowId;
 
 use super::App;
-use crate::viewer::action::{Action, Press};
+use crate::viewer::action::Action;
 use crate::viewer::menu::Menu;
 use crate::viewer::pointer::Gesture;
+use crate::viewer::press::Press;
 
 impl ApplicationHandler for App<'_> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {

@@ -1,0 +1,130 @@
+//! What each action does.
+
+use winit::event_loop::ActiveEventLoop;
+
+use super::App;
+use crate::image::Format;
+use crate::viewer::action::Action;
+use crate::viewer::comparison::Errors;
+use crate::{Kernel, Stage};
+
+/// α turned by an arrow key, in radians.
+const NUDGE: f64 = 0.05;
+
+/// What + and − do to the speed.
+const FASTER: f64 = 1.25;
+
+impl App<'_> {
+    pub(super) fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        match action {
+            Action::Stage(stage) if stage == self.stage => {}
+            Action::Stage(Stage::Animation) => self.stage = Stage::Animation,
+            Action::Stage(stage) => {
+                self.stage = stage;
+                self.playback.settle();
+            }
+            Action::Pause if self.stage == Stage::Animation => self.playback.toggle(),
+            Action::Pause => {}
+            Action::NextFrame => {
+                self.stop();
+                self.playback.next_frame();
+            }
+            Action::PreviousFrame => {
+                self.stop();
+                self.playback.previous_frame();
+            }
+            Action::TurnLeft => self.playback.nudge(-NUDGE),
+            Action::TurnRight => self.playback.nudge(NUDGE),
+            Action::Faster => self.playback.scale(FASTER),
+            Action::Slower => self.playback.scale(1.0 / FASTER),
+            Action::Zero => self.playback.zero(),
+            Action::SavePng => self.save(Format::Png),
+            Action::SaveExr => self.save(Format::Exr),
+            Action::Errors => self.toggle_errors(),
+            Action::NextKernel => self.next_kernel(),
+            Action::Information => {
+                self.sheet.information = !self.sheet.information;
+                self.touch();
+            }
+            Action::Copy => self.copy(),
+            Action::Menu => {
+                let place = self.pointer.place();
+                self.toggle_menu(place);
+            }
+            Action::Help => {
+                self.sheet.help = !self.sheet.help;
+                self.touch();
+            }
+            Action::Fit => {
+                if let Some(view) = &mut self.view {
+                    view.fit();
+                }
+                self.touch();
+            }
+            Action::FullScreen => {
+                if let Some(view) = &self.view {
+                    view.toggle_full_screen();
+                }
+            }
+            Action::Leave => event_loop.exit(),
+        }
+        if !self.playing() {
+            self.meter.stop();
+        }
+        self.retitle();
+        if self.playing() {
+            self.ask_for_redraw();
+        } else {
+            self.tracing.wish(self.wanted());
+        }
+    }
+
+    /// Shows the errors of the picture, or the picture again.
+    fn toggle_errors(&mut self) {
+        self.errors = match self.errors {
+            Some(_) => None,
+            None => Some(Errors::default()),
+        };
+        self.uploaded = false;
+        self.compare();
+        self.touch();
+    }
+
+    pub(super) fn next_kernel(&mut self) {
+        let kernels = Kernel::ALL.iter().cycle();
+        let next = kernels.skip_while(|&&kernel| kernel != self.kernel).nth(1);
+        self.kernel = next.copied().unwrap_or_default();
+    }
+
+    /// Pauses the animation if it is on.
+    fn stop(&mut self) {
+        if self.stage == Stage::Animation {
+            self.playback.pause();
+        }
+    }
+
+    fn save(&self, format: Format) {
+        let frame = match &self.shown {
+            // What a person sees is what is saved, although the next picture is on its way.
+            Some(shown) if self.playing() => shown.frame,
+            _ => self.wanted(),
+        };
+        self.tracing.save(frame, format);
+    }
+
+    /// Copies the text of the pixel that was clicked on.
+    fn copy(&mut self) {
+        let (Some((_, text)), Some(clipboard)) = (&self.sheet.inspected, &mut self.clipboard)
+        else {
+            self.sheet
+                .say("nothing to copy: click on a pixel first".to_owned());
+            return self.touch();
+        };
+        let said = match clipboard.copy(text.clone()) {
+            Ok(()) => "copied the text of the clicked pixel".to_owned(),
+            Err(error) => format!("not copied: {error}"),
+        };
+        self.sheet.say(said);
+        self.touch();
+    }
+}

@@ -1,0 +1,284 @@
+//! From a key going down to what it asks for.
+
+use winit::keyboard::{Key, KeyLocation, ModifiersState, PhysicalKey};
+
+use super::action::{Action, BINDINGS, Binding};
+
+/// A key going down.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Press<'a> {
+    /// What the key means in the person's layout.
+    pub(super) meaning: &'a Key,
+    /// Where it lies on the keyboard.
+    pub(super) place: PhysicalKey,
+    /// On which part of the keyboard its meaning lies.
+    pub(super) location: KeyLocation,
+    pub(super) modifiers: ModifiersState,
+    /// It is held down.
+    pub(super) repeat: bool,
+}
+
+impl Press<'_> {
+    /// The action it asks for, if any.
+    ///
+    /// What a key means decides where it means a letter, a digit or a key of its own: on-screen keyboards and programs that type
+    /// report such keys at false places. Otherwise its place comes first: the digit row of a French keyboard means `&é"'(-è`, a
+    /// keypad without NumLock means arrows, and the letters of a Cyrillic keyboard are none of ours.
+    pub(super) fn action(&self) -> Option<Action> {
+        let others = ModifiersState::ALT | ModifiersState::SUPER;
+        if self.modifiers.intersects(others) {
+            return None;
+        }
+        let certain = match self.meaning {
+            Key::Character(text) => text.chars().all(|c| c.is_ascii_alphanumeric()),
+            Key::Named(_) => self.location != KeyLocation::Numpad,
+            Key::Unidentified(_) | Key::Dead(_) => false,
+        };
+        let by_meaning = || self.find(|binding| self.means(binding));
+        let binding = if certain {
+            by_meaning()
+        } else {
+            self.find(|binding| self.lies(binding)).or_else(by_meaning)
+        };
+        binding
+            .filter(|binding| binding.repeats || !self.repeat)
+            .map(|binding| binding.action)
+    }
+
+    fn find(&self, matches: impl Fn(&Binding) -> bool) -> Option<&'static Binding> {
+        let (shift, ctrl) = (self.modifiers.shift_key(), self.modifiers.control_key());
+        BINDINGS
+            .iter()
+            .filter(|binding| binding.ctrl == ctrl)
+            .filter(|binding| binding.shift.is_none_or(|wanted| wanted == shift))
+            .find(|binding| matches(binding))
+    }
+
+    fn means(&self, binding: &Binding) -> bool {
+        match self.meaning {
+            Key::Character(text) => {
+                let mut characters = text.chars();
+                let first = characters.next().map(|c| c.to_ascii_lowercase());
+                characters.next().is_none()
+                    && first.is_some_and(|c| binding.characters.contains(&c))
+            }
+            Key::Named(named) => binding.named.contains(named),
+            Key::Unidentified(_) | Key::Dead(_) => false,
+        }
+    }
+
+    fn lies(&self, binding: &Binding) -> bool {
+        matches!(self.place, PhysicalKey::Code(code) if binding.places.contains(&code))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Stage;
+    use Action as A;
+    use NamedKey as N;
+    use winit::keyboard::{KeyCode as C, NamedKey, NativeKey};
+
+    fn press(meaning: Key, place: C) -> Option<Action> {
+        held(
+            meaning,
+            place,
+            KeyLocation::Standard,
+            ModifiersState::empty(),
+        )
+    }
+
+    fn shifted(meaning: &str, place: C) -> Option<Action> {
+        held(
+            character(meaning),
+            place,
+            KeyLocation::Standard,
+            ModifiersState::SHIFT,
+        )
+    }
+
+    fn keypad(meaning: Key, place: C) -> Option<Action> {
+        held(meaning, place, KeyLocation::Numpad, ModifiersState::empty())
+    }
+
+    fn held(
+        meaning: Key,
+        place: C,
+        location: KeyLocation,
+        modifiers: ModifiersState,
+    ) -> Option<Action> {
+        let place = PhysicalKey::Code(place);
+        Press {
+            meaning: &meaning,
+            place,
+            location,
+            modifiers,
+            repeat: false,
+        }
+        .action()
+    }
+
+    fn character(text: &str) -> Key {
+        Key::Character(text.into())
+    }
+
+    const ROW: [C; 7] = [
+        C::Digit1,
+        C::Digit2,
+        C::Digit3,
+        C::Digit4,
+        C::Digit5,
+        C::Digit6,
+        C::Digit7,
+    ];
+    const PAD: [C; 7] = [
+        C::Numpad1,
+        C::Numpad2,
+        C::Numpad3,
+        C::Numpad4,
+        C::Numpad5,
+        C::Numpad6,
+        C::Numpad7,
+    ];
+
+    #[test]
+    fn digits_choose_the_stage_on_every_keyboard() {
+        let french = ["&", "é", "\"", "'", "(", "-", "è"];
+        let czech = ["+", "ě", "š", "č", "ř", "ž", "ý"];
+        let unlocked = [
+            N::End,
+            N::ArrowDown,
+            N::PageDown,
+            N::ArrowLeft,
+            N::Clear,
+            N::ArrowRight,
+            N::Home,
+        ];
+        for (i, stage) in Stage::ALL.into_iter().enumerate() {
+            let chosen = Some(A::Stage(stage));
+            let digit = character(&stage.number().to_string());
+            assert_eq!(press(digit.clone(), ROW[i]), chosen);
+            assert_eq!(keypad(digit.clone(), PAD[i]), chosen);
+            assert_eq!(press(digit.clone(), C::Escape), chosen, "a false place");
+            assert_eq!(press(digit, C::Digit0), chosen, "a false place");
+            assert_eq!(press(character(french[i]), ROW[i]), chosen);
+            assert_eq!(press(character(czech[i]), ROW[i]), chosen);
+            assert_eq!(keypad(Key::Named(unlocked[i]), PAD[i]), chosen);
+            assert_eq!(
+                press(Key::Unidentified(NativeKey::Unidentified), ROW[i]),
+                chosen
+            );
+            assert_eq!(shifted(&stage.number().to_string(), ROW[i]), chosen);
+        }
+        assert_eq!(press(character("à"), C::Digit0), Some(A::Zero));
+        assert_eq!(keypad(Key::Named(N::Insert), C::Numpad0), Some(A::Zero));
+        assert_eq!(press(character("8"), C::Digit1), None, "a false place");
+    }
+
+    #[test]
+    fn letters_go_by_their_meaning_and_only_foreign_ones_by_their_place() {
+        assert_eq!(press(character("q"), C::KeyA), Some(A::Leave));
+        assert_eq!(press(character("a"), C::KeyQ), None);
+        assert_eq!(
+            press(character("q"), C::Digit1),
+            Some(A::Leave),
+            "a false place"
+        );
+        assert_eq!(press(character("й"), C::KeyQ), Some(A::Leave));
+        assert_eq!(press(character("ы"), C::KeyS), Some(A::SavePng));
+        assert_eq!(shifted("Ы", C::KeyS), Some(A::SaveExr));
+        assert_eq!(press(character("s"), C::KeyS), Some(A::SavePng));
+        assert_eq!(
+            press(character("S"), C::KeyS),
+            Some(A::SavePng),
+            "Caps Lock"
+        );
+        assert_eq!(shifted("S", C::KeyS), Some(A::SaveExr));
+        assert_eq!(press(character("f"), C::KeyF), Some(A::FullScreen));
+        assert_eq!(press(character("x"), C::KeyX), None);
+    }
+
+    #[test]
+    fn the_other_keys_do_what_is_written_beside_them() {
+        for (named, action) in [
+            (N::Space, A::Pause),
+            (N::ArrowLeft, A::TurnLeft),
+            (N::ArrowRight, A::TurnRight),
+            (N::Home, A::Zero),
+            (N::Escape, A::Leave),
+        ] {
+            assert_eq!(press(Key::Named(named), C::Digit3), Some(action));
+        }
+        for (text, place, action) in [
+            (".", C::Period, A::NextFrame),
+            (",", C::Comma, A::PreviousFrame),
+            ("=", C::Equal, A::Faster),
+            ("-", C::Minus, A::Slower),
+            ("0", C::Digit0, A::Zero),
+        ] {
+            assert_eq!(press(character(text), place), Some(action));
+        }
+        assert_eq!(shifted("+", C::Equal), Some(A::Faster));
+        assert_eq!(keypad(character("+"), C::NumpadAdd), Some(A::Faster));
+        assert_eq!(keypad(character("-"), C::NumpadSubtract), Some(A::Slower));
+        assert_eq!(press(Key::Named(N::Tab), C::Tab), None);
+    }
+
+    #[test]
+    fn keys_of_the_desktop_are_not_ours() {
+        let ctrl = |meaning, place| {
+            let (location, ctrl) = (KeyLocation::Standard, ModifiersState::CONTROL);
+            held(character(meaning), place, location, ctrl)
+        };
+        assert_eq!(ctrl("c", C::KeyC), Some(A::Copy));
+        assert_eq!(ctrl("с", C::KeyC), Some(A::Copy), "a Cyrillic keyboard");
+        assert_eq!(ctrl("s", C::KeyS), None);
+        assert_eq!(press(character("c"), C::KeyC), None);
+        for other in [
+            ModifiersState::CONTROL,
+            ModifiersState::ALT,
+            ModifiersState::SUPER,
+        ] {
+            assert_eq!(
+                held(character("q"), C::KeyQ, KeyLocation::Standard, other),
+                None
+            );
+        }
+    }
+
+    #[test]
+    fn holding_a_key_repeats_only_what_moves() {
+        for binding in BINDINGS {
+            let meaning = match (binding.characters, binding.named) {
+                ([first, ..], _) => character(&first.to_string()),
+                (_, [first, ..]) => Key::Named(*first),
+                _ => unreachable!("{} is on no key", binding.keys),
+            };
+            let press = |repeat| {
+                let mut modifiers = ModifiersState::empty();
+                modifiers.set(ModifiersState::SHIFT, binding.shift == Some(true));
+                modifiers.set(ModifiersState::CONTROL, binding.ctrl);
+                Press {
+                    meaning: &meaning,
+                    place: PhysicalKey::Code(C::F35),
+                    location: KeyLocation::Standard,
+                    modifiers,
+                    repeat,
+                }
+                .action()
+            };
+            assert_eq!(press(false), Some(binding.action));
+            let moves = matches!(
+                binding.action,
+                A::NextFrame
+                    | A::PreviousFrame
+                    | A::TurnLeft
+                    | A::TurnRight
+                    | A::Faster
+                    | A::Slower
+            );
+            assert_eq!(press(true), moves.then_some(binding.action));
+        }
+    }
+}

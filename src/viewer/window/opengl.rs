@@ -1,0 +1,128 @@
+//! The way from a display to OpenGL.
+
+use glutin::config::{ColorBufferType, Config, ConfigTemplateBuilder};
+use glutin::display::{Display, DisplayApiPreference};
+use glutin::prelude::*;
+use raw_window_handle::{HasDisplayHandle as _, RawDisplayHandle, RawWindowHandle};
+use winit::event_loop::ActiveEventLoop;
+
+use crate::viewer::ViewerError;
+use crate::viewer::error::reason;
+
+/// The functions of OpenGL in the context that is current, one of `display`.
+pub(super) fn functions(display: &Display) -> glow::Context {
+    // SAFETY: the context is current, and the functions come from its own display.
+    unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) }
+}
+
+/// Opens OpenGL on the display of `event_loop`; on Windows through `window`.
+pub(super) fn display(
+    event_loop: &ActiveEventLoop,
+    window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> Result<Display, Failure> {
+    let handle = event_loop.display_handle()?.as_raw();
+    let preference = preference(handle, window, prefer_egl);
+    // SAFETY: the event loop keeps the display open until the window and its context are gone.
+    Ok(unsafe { Display::new(handle, preference) }?)
+}
+
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn preference(
+    display: RawDisplayHandle,
+    _window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> DisplayApiPreference {
+    match display {
+        RawDisplayHandle::Xlib(_) if !prefer_egl => {
+            DisplayApiPreference::Glx(Box::new(winit::platform::x11::register_xlib_error_hook))
+        }
+        _ => DisplayApiPreference::Egl,
+    }
+}
+
+#[cfg(windows)]
+fn preference(
+    _display: RawDisplayHandle,
+    window: Option<RawWindowHandle>,
+    prefer_egl: bool,
+) -> DisplayApiPreference {
+    if prefer_egl {
+        DisplayApiPreference::Egl
+    } else {
+        DisplayApiPreference::Wgl(window)
+    }
+}
+
+#[cfg(target_vendor = "apple")]
+fn preference(
+    _display: RawDisplayHandle,
+    _window: Option<RawWindowHandle>,
+    _prefer_egl: bool,
+) -> DisplayApiPreference {
+    DisplayApiPreference::Cgl
+}
+
+/// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop could shine.
+pub(super) fn config(display: &Display) -> Result<Config, Failure> {
+    let template = ConfigTemplateBuilder::new()
+        .with_alpha_size(0)
+        .with_depth_size(0)
+        .with_stencil_size(0)
+        .build();
+    // SAFETY: the template names no native window that could have gone.
+    let configs = unsafe { display.find_configs(template) }?;
+    let eight_bits = ColorBufferType::Rgb {
+        r_size: 8,
+        g_size: 8,
+        b_size: 8,
+    };
+    configs
+        .min_by_key(|config| {
+            (
+                config.color_buffer_type() != Some(eight_bits),
+                config.supports_transparency() == Some(true),
+                config.alpha_size(),
+                config.num_samples(),
+                !config.hardware_accelerated(),
+                config.depth_size(),
+                config.stencil_size(),
+                config.srgb_capable(),
+            )
+        })
+        .ok_or_else(|| {
+            Failure::OpenGl("the display offers no configuration for a window".to_owned())
+        })
+}
+
+/// Why a window or what is in it could not be made.
+pub(super) enum Failure {
+    /// This way to OpenGL is closed; another may be open.
+    OpenGl(String),
+    /// No way leads further.
+    Viewer(ViewerError),
+}
+
+impl From<glutin::error::Error> for Failure {
+    fn from(error: glutin::error::Error) -> Failure {
+        Failure::OpenGl(error.to_string())
+    }
+}
+
+impl From<winit::error::OsError> for Failure {
+    fn from(error: winit::error::OsError) -> Failure {
+        Failure::OpenGl(reason(&error))
+    }
+}
+
+impl From<raw_window_handle::HandleError> for Failure {
+    fn from(error: raw_window_handle::HandleError) -> Failure {
+        Failure::OpenGl(error.to_string())
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Failure {
+        Failure::Viewer(error)
+    }
+}
