@@ -31,6 +31,9 @@ use sway::{HEIGHT, Sway, WIDTH};
 /// How long anything may take that is waited for.
 const DEADLINE: Duration = Duration::from_secs(30);
 
+/// How long something is watched that must stay as it is.
+const WATCH: Duration = Duration::from_secs(2);
+
 #[test]
 #[ignore = "needs sway, wtype and grim"]
 fn shows_stage_after_stage_as_traced() {
@@ -41,6 +44,7 @@ fn shows_stage_after_stage_as_traced() {
         sway.type_keys(&stage.number().to_string());
         sway.shows(*stage);
     }
+    viewer.sleeps();
     sway.type_keys("q");
     let [traces, uploads, _] = viewer.left();
     assert_eq!([traces, uploads], [7, 7]);

@@ -8,7 +8,7 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::DEADLINE;
+use super::{DEADLINE, WATCH};
 
 /// Calls `probe` until it gives something, for as long as [`DEADLINE`].
 pub fn wait_for<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
@@ -86,7 +86,7 @@ impl Program {
     }
 
     /// What its main thread has done so far: the times that it was put to sleep or to wait, and its ticks of processor time.
-    pub fn activity(&self) -> Vec<String> {
+    fn activity(&self) -> Vec<String> {
         let read = |file: &str| {
             let path = format!("/proc/{0}/task/{0}/{file}", self.process.id());
             std::fs::read_to_string(path).unwrap()
@@ -99,6 +99,15 @@ impl Program {
         let (_, fields) = stat.rsplit_once(')').unwrap();
         let ticks = fields.split_whitespace().skip(11).take(2);
         switches.chain(ticks).map(str::to_owned).collect()
+    }
+
+    /// Waits until it does nothing at all.
+    pub fn sleeps(&self) {
+        wait_for("the program to sleep on", || {
+            let before = self.activity();
+            thread::sleep(WATCH);
+            (self.activity() == before).then_some(())
+        });
     }
 
     /// The memory that it has in use, in KiB.

@@ -1,0 +1,99 @@
+//! Displays that serve, that lack something, and that go away.
+
+use firsthit::Stage;
+
+use super::program::Program;
+use super::session::Session;
+use super::xvfb::Xvfb;
+
+/// The program, on a display that cannot be had, says so in one line and ends with status 1.
+fn refused(environment: &[(&str, &str)], parts: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut viewer = Program::start(folder.path(), &["view"], environment);
+    let (status, errors) = viewer.ended();
+    assert_eq!(status.code(), Some(1), "{errors}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    for part in parts.iter().chain(&["firsthit capture"]) {
+        assert!(errors.contains(part), "{part} is not in {errors}");
+    }
+}
+
+#[test]
+fn no_display_is_one_line() {
+    refused(&[], &["WAYLAND_DISPLAY", "DISPLAY"]);
+    refused(&[("DISPLAY", "")], &["WAYLAND_DISPLAY", "DISPLAY"]);
+    refused(&[("DISPLAY", ":64000")], &["DISPLAY=:64000"]);
+}
+
+#[test]
+fn no_wayland_display_is_one_line() {
+    // Without Wayland's libraries that is the line, whatever the display.
+    for library in ["libwayland-client.so.0", "libwayland-egl.so.1"] {
+        // SAFETY: Wayland's libraries run no code of consequence when they are loaded.
+        if let Err(error) = unsafe { libloading::Library::new(library) } {
+            assert!(std::env::var_os("CI").is_none(), "{library}: {error}");
+            eprintln!(
+                "skipped: no {library} ({error}); Debian packages: libwayland-client0 libwayland-egl1"
+            );
+            return;
+        }
+    }
+    let nowhere = "/nowhere/wayland-0";
+    refused(
+        &[("WAYLAND_DISPLAY", nowhere)],
+        &[&format!("WAYLAND_DISPLAY={nowhere}")],
+    );
+}
+
+#[test]
+fn a_server_without_what_a_window_needs_is_one_line() {
+    let Some(xvfb) = Xvfb::start(&["-extension", "RANDR"]) else {
+        return;
+    };
+    refused(&[("DISPLAY", &xvfb.display)], &["RANDR"]);
+}
+
+#[test]
+fn x11_serves_where_wayland_is_named_but_not_there() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let nowhere = ("WAYLAND_DISPLAY", "/nowhere/wayland-0");
+    let session = Session::on(xvfb, &["view", "--stage", "6", "--size", "40"], &[nowhere]);
+    session.shows(40, Stage::Reflection, 0.0);
+}
+
+/// An X server on which OpenGL goes another way: EGL instead of GLX.
+const WITHOUT_GLX: [&str; 2] = ["-extension", "GLX"];
+
+#[test]
+fn egl_serves_where_the_server_has_no_glx() {
+    let Some(xvfb) = Xvfb::start(&WITHOUT_GLX) else {
+        return;
+    };
+    let session = Session::on(xvfb, &["view", "--stage", "6", "--size", "120"], &[]);
+    session.shows(120, Stage::Reflection, 0.0);
+    session.resize(500, 300);
+    session.shows(120, Stage::Reflection, 0.0);
+    session.type_keys("5");
+    session.shows(120, Stage::Shadow, 0.0);
+}
+
+#[test]
+fn the_death_of_the_server_is_one_line() {
+    for server in [&[][..], &WITHOUT_GLX] {
+        for stage in ["6", "7"] {
+            let Some(xvfb) = Xvfb::start(server) else {
+                return;
+            };
+            // Large enough that Mesa sends it to the server in parts.
+            let arguments = ["view", "--stage", stage, "--size", "300"];
+            let mut session = Session::on(xvfb, &arguments, &[]);
+            session.crash_server();
+            let (status, errors) = session.program.ended();
+            assert_eq!(status.code(), Some(1), "{errors}");
+            assert_eq!(errors.lines().count(), 1, "{errors}");
+            assert!(errors.contains("the display went away"), "{errors}");
+        }
+    }
+}

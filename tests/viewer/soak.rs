@@ -1,0 +1,52 @@
+//! The viewer, used at random.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::session::{DOWN, LEFT, RIGHT, RIGHT_BUTTON, Session, UP, WHEEL_DOWN, WHEEL_UP};
+
+/// How long the viewer is used at random, in seconds: so many as this variable says.
+const SOAK: &str = "FIRSTHIT_SOAK_SECONDS";
+
+#[test]
+fn used_at_random_it_stays_well_and_its_memory_bounded() {
+    let Some(mut session) = Session::start(&["view", "--size", "200"]) else {
+        return;
+    };
+    let seconds = std::env::var(SOAK).map_or(10, |seconds| seconds.parse().unwrap());
+    let start = Instant::now();
+    // Always the same choices: Knuth's generator in 64 bits.
+    let mut state = 1_u64;
+    let mut random = |below: u64| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let keys = b"1234567 .,+-0ekimhz";
+    let mut settled = None;
+    while start.elapsed() < Duration::from_secs(seconds) {
+        match random(12) {
+            0 => session.resize(1 + random(700) as u32, 1 + random(700) as u32),
+            1 => session.point(random(300) as i16, random(300) as i16),
+            2 => session.click(if random(2) == 0 { WHEEL_UP } else { WHEEL_DOWN }),
+            3 => session.click(RIGHT_BUTTON),
+            4 => session.press(if random(2) == 0 { UP } else { DOWN }),
+            5 => session.press(if random(2) == 0 { LEFT } else { RIGHT }),
+            _ => session.press(u32::from(keys[random(keys.len() as u64) as usize])),
+        }
+        thread::sleep(Duration::from_millis(5));
+        // By then everything has been open once.
+        if settled.is_none() && start.elapsed() > Duration::from_secs(seconds / 2) {
+            settled = Some(session.program.memory());
+        }
+    }
+    let (settled, end) = (settled.unwrap(), session.program.memory());
+    assert!(
+        end < settled + 64 * 1024,
+        "{settled} KiB, and then {end} KiB"
+    );
+    // Whatever is open, it leaves as it is told.
+    session.close();
+    session.program.left();
+}
