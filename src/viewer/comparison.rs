@@ -69,8 +69,8 @@ impl Errors {
         if let Some(compared) = &self.done {
             lines.push(format!(
                 "{} against reference\n\
-                 {} wrong pixels (green, single ones ringed)\n\
-                 {} misrounded samples, at most {} f32 steps off",
+                 wrong pixels: {} (green, single ones ringed)\n\
+                 misrounded samples: {}, at most {} f32 steps off",
                 compared.frame.kernel.name(),
                 compared.wrong,
                 compared.misrounded,
