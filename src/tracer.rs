@@ -13,6 +13,7 @@ mod listing;
 
 mod palette;
 mod pixel;
+mod progress;
 #[cfg(test)]
 mod rational;
 mod rows;
@@ -34,6 +35,7 @@ use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
+pub use progress::Progress;
 use rows::{Memory, Precision, Rows, Scratch};
 pub use simd::Simd;
 
@@ -155,6 +157,7 @@ pub struct Tracer {
     /// `None` for one thread, which is the caller's.
     pool: Option<ThreadPool>,
     simd: Simd,
+    progress: Progress,
     in_doubt: InDoubt,
     /// What is known of the rows of the frame that was traced last to be traced over.
     memory: Vec<Memory>,
@@ -180,6 +183,7 @@ impl Tracer {
             simd: Simd::best(),
             memory: Vec::new(),
             frame: 0,
+            progress: Progress::default(),
             in_doubt: InDoubt::default(),
         })
     }
@@ -202,6 +206,11 @@ impl Tracer {
     /// How many pixels of the frame traced last were in doubt; none for a kernel that knows no doubt.
     pub fn in_doubt(&self) -> InDoubt {
         self.in_doubt
+    }
+
+    /// How far it is with the frame that it traces now or traced last.
+    pub fn progress(&self) -> Progress {
+        self.progress.clone()
     }
 
     /// Traces `scene` in `stage`, seen at angle `alpha` in radians, into the whole of `image`.
@@ -362,6 +371,7 @@ impl Tracer {
             Kernel::Listing => Some(Listing::new(scene, stage, alpha, n)?),
             _ => None,
         };
+        self.progress.set(0);
         let mut memory = std::mem::take(&mut self.memory);
         let (remembered, samples) = match extent {
             Extent::Whole => (None, image.samples_mut()),
@@ -412,10 +422,13 @@ impl Tracer {
             rows.begin(&mut scratch);
             scratch
         };
-        self.each_row(target, scratch, |number, row, scratch| {
+        let size = target.size;
+        let in_doubt = self.each_row(target, scratch, |number, row, scratch| {
             let memory = row.memory.and_then(<[Memory]>::first_mut);
             rows.trace(number, row.samples, row.decisions, memory, scratch)
-        })
+        });
+        self.progress.set(size);
+        in_doubt
     }
 
     fn trace_pixels(&self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
@@ -433,6 +446,7 @@ impl Tracer {
                         *place = decision;
                     }
                 }
+                self.progress.add_row();
                 in_doubt
             },
         )

@@ -182,3 +182,21 @@ fn an_angle_that_is_none_is_refused() {
         assert!(image.samples().iter().all(|&sample| sample == 0.0));
     }
 }
+
+#[test]
+fn a_tracer_says_how_far_it_is() {
+    let mut image = Image::new(64).unwrap();
+    for threads in [1, 2] {
+        for kernel in Kernel::ALL {
+            let mut tracer = Tracer::new(kernel, threads).unwrap();
+            let progress = tracer.progress();
+            assert_eq!(progress.rows(), 0);
+            for _ in 0..2 {
+                tracer
+                    .trace(&Scene::builtin(), Stage::Reflection, 0.0, &mut image)
+                    .unwrap();
+                assert_eq!(progress.rows(), 64, "{}", kernel.name());
+            }
+        }
+    }
+}

@@ -269,7 +269,7 @@ impl App<'_> {
             facts.inspected = Some(view.square_in_points(*pixel));
         }
         if let Some(errors) = &self.errors {
-            facts.errors = Some(errors.text());
+            facts.errors = Some(errors.text(self.size));
             let rings = errors.done.iter().flat_map(|compared| &compared.rings);
             facts.rings = rings.map(|&pixel| view.square_in_points(pixel)).collect();
         }
@@ -379,7 +379,9 @@ impl App<'_> {
                 continue;
             };
             match reply {
-                comparison::Reply::Begun(what) => errors.doing = what,
+                comparison::Reply::Begun(kernel, progress) => {
+                    errors.tracing = Some((kernel, progress));
+                }
                 comparison::Reply::Done(compared) => {
                     errors.done = Some(compared);
                     self.uploaded = false;

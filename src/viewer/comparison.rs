@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::UVec2;
 
 use crate::difference::{error_color, steps};
-use crate::tracer::Decision;
+use crate::tracer::{Decision, Progress};
 use crate::{Image, Kernel, Scene, Tracer};
 
 use super::tracing::Frame;
@@ -40,8 +40,8 @@ pub(super) struct Compared {
 
 /// What the thread answers.
 pub(super) enum Reply {
-    /// What it is about to do.
-    Begun(&'static str),
+    /// It traces the picture of this kernel now.
+    Begun(Kernel, Progress),
     Done(Compared),
     Failed(ViewerError),
 }
@@ -51,7 +51,8 @@ pub(super) enum Reply {
 pub(super) struct Errors {
     /// The frame that is compared now or was compared last, and since when.
     pub(super) begun: Option<(Frame, Instant)>,
-    pub(super) doing: &'static str,
+    /// The kernel whose picture is traced for it now, and how far that is.
+    pub(super) tracing: Option<(Kernel, Progress)>,
     /// What the window shows.
     pub(super) done: Option<Compared>,
 }
@@ -63,8 +64,8 @@ impl Errors {
         self.begun.is_some_and(|(frame, _)| done != Some(frame))
     }
 
-    /// What is seen, and how far the next comparison is.
-    pub(super) fn text(&self) -> String {
+    /// What is seen, and how far the next comparison is, of pictures of `size` × `size` pixels.
+    pub(super) fn text(&self, size: u32) -> String {
         let mut lines = Vec::new();
         if let Some(compared) = &self.done {
             lines.push(format!(
@@ -78,10 +79,14 @@ impl Errors {
             ));
         }
         if let Some((frame, since)) = self.begun.filter(|_| self.is_busy()) {
+            let tracing = self.tracing.as_ref().map(|(kernel, progress)| {
+                let percent = 100 * u64::from(progress.rows()) / u64::from(size.max(1));
+                format!(", tracing {} {percent} %", kernel.name())
+            });
             lines.push(format!(
-                "{}: {} … {:.1} s",
+                "comparing {}{} … {:.1} s",
                 frame.kernel.name(),
-                self.doing,
+                tracing.unwrap_or_default(),
                 since.elapsed().as_secs_f64()
             ));
         }
@@ -106,8 +111,8 @@ impl Comparing {
     ) -> Result<Comparing, ViewerError> {
         let (scene, size, threads) = (options.scene.clone(), options.size, options.threads);
         let worker = Worker::start("comparing", wake, move |frame, reply| {
-            let answer = compare(&scene, size, threads, frame, &mut |what| {
-                reply(Reply::Begun(what));
+            let answer = compare(&scene, size, threads, frame, &mut |kernel, progress| {
+                reply(Reply::Begun(kernel, progress));
             });
             reply(answer.map_or_else(Reply::Failed, Reply::Done));
         })
@@ -136,23 +141,17 @@ fn compare(
     size: u32,
     threads: usize,
     frame: Frame,
-    begin: &mut dyn FnMut(&'static str),
+    begin: &mut dyn FnMut(Kernel, Progress),
 ) -> Result<Compared, ViewerError> {
-    let trace = |kernel| -> Result<(Image, Vec<Decision>), ViewerError> {
+    let mut trace = |kernel| -> Result<(Image, Vec<Decision>), ViewerError> {
         let mut image = Image::new(size)?;
-        let decisions = Tracer::new(kernel, threads)?.trace_with_decisions(
-            scene,
-            frame.stage,
-            frame.alpha,
-            &mut image,
-        )?;
+        let mut tracer = Tracer::new(kernel, threads)?;
+        begin(kernel, tracer.progress());
+        let decisions = tracer.trace_with_decisions(scene, frame.stage, frame.alpha, &mut image)?;
         Ok((image, decisions))
     };
-    begin("tracing the kernel's picture");
     let (mut image, decisions) = trace(frame.kernel)?;
-    begin("tracing reference");
     let (truth, true_decisions) = trace(Kernel::Reference)?;
-    begin("comparing");
     let wrong: Vec<bool> = decisions
         .iter()
         .zip(&true_decisions)
@@ -204,8 +203,39 @@ fn rings(wrong: &[bool], size: usize) -> Vec<UVec2> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 mod tests {
     use super::*;
+    use crate::Stage;
+
+    #[test]
+    fn a_comparison_says_how_far_it_is() {
+        let frame = Frame {
+            stage: Stage::Reflection,
+            alpha: 0.0,
+            kernel: Kernel::Fast,
+        };
+        let mut errors = Errors {
+            begun: Some((frame, Instant::now())),
+            ..Errors::default()
+        };
+        let mut begun = Vec::new();
+        let compared = compare(&Scene::builtin(), 40, 1, frame, &mut |kernel, progress| {
+            errors.tracing = Some((kernel, progress));
+            begun.push(errors.text(40));
+        });
+        let compared = compared.unwrap();
+        assert!(begun[0].starts_with("comparing fast, tracing fast 0 % … "));
+        assert!(begun[1].starts_with("comparing fast, tracing reference 0 % … "));
+        assert!(
+            errors
+                .text(40)
+                .starts_with("comparing fast, tracing reference 100 % … ")
+        );
+        errors.done = Some(compared);
+        assert!(errors.text(40).starts_with("fast against reference\n"));
+        assert_eq!(errors.text(40).lines().count(), 3);
+    }
 
     #[test]
     fn single_wrong_pixels_are_ringed_and_crowds_are_not() {
