@@ -25,6 +25,7 @@
 
 mod ball;
 mod lanes;
+mod order;
 mod paint;
 mod plain;
 mod plan;
@@ -232,9 +233,13 @@ impl<'a, P: Lines> Rows<'a, P> {
         };
         match (met, floor) {
             ([], None) => Seen::Only(Show::Paint(self.background)),
-            ([solid], None) => Seen::Only(solid_in(&self.direct, *solid, column)),
             ([], Some(floor)) => self.seen_of_surface(floor, column, plan),
             (_, floor) => {
+                if floor.is_none()
+                    && let Some(solid) = self.direct.order.first(met)
+                {
+                    return Seen::Only(solid_in(&self.direct, solid, column));
+                }
                 let rest = match floor {
                     Some(floor) => self.seen_of_surface(floor, column, plan),
                     None => Seen::Only(Show::Paint(self.background)),
@@ -261,17 +266,19 @@ impl<'a, P: Lines> Rows<'a, P> {
         };
         // A solid that goes through the surface may be met below it, where nothing is mirrored.
         let goes_through = |&solid: &usize| mirrored.solids[solid].side != Side::Above;
-        match met {
-            [] => itself,
-            met if met.iter().any(goes_through) => Seen::UNKNOWN,
-            [solid] => Seen::Only(solid_in(mirrored, *solid, column)),
-            met => {
-                let shows = met
-                    .iter()
-                    .map(|&solid| (solid, solid_in(mirrored, solid, column)));
-                plan.contest(true, shows, false, itself)
-            }
+        if met.is_empty() {
+            return itself;
         }
+        if met.iter().any(goes_through) {
+            return Seen::UNKNOWN;
+        }
+        if let Some(solid) = mirrored.order.first(met) {
+            return Seen::Only(solid_in(mirrored, solid, column));
+        }
+        let shows = met
+            .iter()
+            .map(|&solid| (solid, solid_in(mirrored, solid, column)));
+        plan.contest(true, shows, false, itself)
     }
 
     /// What a row shows where it has to decide about that, from the left.

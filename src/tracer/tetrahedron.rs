@@ -138,6 +138,10 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
+    pub(super) fn vertices(&self) -> [Vector<R>; 4] {
+        self.vertices
+    }
+
     /// The half-space of a face, from within.
     pub(super) fn plane(&self, face: usize) -> HalfSpace<R> {
         self.inside(face, true)

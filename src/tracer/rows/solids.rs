@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::Parts;
 use super::ball::Ball;
 use super::lanes::Caster;
+use super::order::Order;
 use super::paint::PaintNumber;
 use super::shape::{Ellipse, HalfPlane, MORE, Off, Screen, Shape, Sheet, U};
 use super::sweep::{Border, Borders};
@@ -24,6 +25,8 @@ pub(super) struct Solids {
     /// Whether points can be in shadow.
     pub(super) shadows: bool,
     pub(super) solids: Vec<Solid>,
+    /// Which is in front of which.
+    pub(super) order: Order,
 }
 
 /// One of them.
@@ -94,13 +97,21 @@ impl Solids {
     ) -> Solids {
         let screen = parts.screen;
         let (scene, stage) = (picture.scene, picture.stage);
+        let count = view.spheres.len();
         let mut all = Solids {
             mirrored,
             shadows: stage >= Stage::Shadow,
             solids: Vec::new(),
+            order: Order::new(
+                view,
+                match stage {
+                    Stage::Spheres => 0..count,
+                    Stage::Tetrahedron => count..count + view.tetrahedra.len(),
+                    _ => 0..count + view.tetrahedra.len(),
+                },
+            ),
         };
         let facts = scene.facts();
-        let count = view.spheres.len();
         let rising = -scene.light().direction.y;
         // Whether the surface may stand between a point of a solid and the light.
         let surface_shades = |solid: usize| {
