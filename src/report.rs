@@ -239,7 +239,7 @@ impl Work<'_> {
                 for (&kernel, errors) in self.request.kernels.iter().zip(errors) {
                     let measured = match errors {
                         Ok(errors) => {
-                            let timings = self.timings(named, stage, kernel, &fillers)?;
+                            let timings = self.timings(named, stage, kernel, &mut fillers)?;
                             Ok(Measured { timings, errors })
                         }
                         Err(refusal) => {
@@ -308,7 +308,7 @@ impl Work<'_> {
         named: &NamedScene,
         stage: Stage,
         kernel: Kernel,
-        fillers: &[(usize, Filler)],
+        fillers: &mut [(usize, Filler)],
     ) -> Result<Vec<Timing>, ReportError> {
         let mut timings = Vec::new();
         for (threads, filler) in fillers {

@@ -13,6 +13,7 @@ mod listing;
 
 mod palette;
 mod pixel;
+pub(crate) mod pool;
 mod progress;
 #[cfg(test)]
 mod rational;
@@ -25,16 +26,16 @@ mod tetrahedron;
 mod vector;
 mod view;
 
+use std::io;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
-
-use rayon::ThreadPool;
-use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 use crate::{Image, Scene, Stage};
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
+use pool::{Pool, lock};
 pub use progress::Progress;
 use rows::{Memory, Precision, Rows, Scratch};
 pub use simd::Simd;
@@ -112,7 +113,7 @@ pub enum TraceError {
         /// How many were asked for.
         threads: usize,
         /// Why there are none.
-        source: rayon::ThreadPoolBuildError,
+        source: io::Error,
     },
 }
 
@@ -148,14 +149,16 @@ fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Ru
     (pixels.explain(column, row, traced), rung)
 }
 
-/// Rows are handed to threads in bands of so many.
-const BAND: usize = 16;
+/// Rows are handed to threads in bands of so many: few enough that the last band of one is not long waited for by the others, and so
+/// many that claiming a band costs nothing beside it.
+const BAND: usize = 8;
 
 /// Traces pictures: made once, used for any number of frames.
 pub struct Tracer {
     kernel: Kernel,
-    /// `None` for one thread, which is the caller's.
-    pool: Option<ThreadPool>,
+    pool: Pool,
+    /// What each thread of the pool needs.
+    local: Vec<Mutex<Local>>,
     simd: Simd,
     progress: Progress,
     in_doubt: InDoubt,
@@ -166,19 +169,16 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// A tracer with `threads` worker threads; 0 is one a core. Their number changes no bit of a picture.
+    /// A tracer with `threads` threads, the caller's among them; 0 is one a core. Their number changes no bit of a picture.
     ///
     /// # Errors
     /// [`TraceError::Threads`] where the system refuses the threads.
     pub fn new(kernel: Kernel, threads: usize) -> Result<Tracer, TraceError> {
-        let pool = if threads == 1 {
-            None
-        } else {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            Some(pool.map_err(|source| TraceError::Threads { threads, source })?)
-        };
+        let pool = Pool::new(threads).map_err(|source| TraceError::Threads { threads, source })?;
+        let local = std::iter::repeat_with(Mutex::default);
         Ok(Tracer {
             kernel,
+            local: local.take(pool.threads()).collect(),
             pool,
             simd: Simd::best(),
             memory: Vec::new(),
@@ -415,15 +415,18 @@ impl Tracer {
         Ok(())
     }
 
-    fn trace_rows(&self, pixels: &impl Lines, precision: Precision, target: Target<'_>) -> InDoubt {
+    fn trace_rows(
+        &mut self,
+        pixels: &impl Lines,
+        precision: Precision,
+        target: Target<'_>,
+    ) -> InDoubt {
         let rows = Rows::new(pixels, precision, self.simd.0);
-        let scratch = || {
-            let mut scratch = Scratch::default();
-            rows.begin(&mut scratch);
-            scratch
-        };
         let size = target.size;
-        let in_doubt = self.each_row(target, scratch, |number, row, scratch| {
+        for local in &mut self.local {
+            rows.begin(&mut inner(local).scratch);
+        }
+        let in_doubt = self.each_row(target, |number, row, scratch| {
             let memory = row.memory.and_then(<[Memory]>::first_mut);
             rows.trace(number, row.samples, row.decisions, memory, scratch)
         });
@@ -431,52 +434,63 @@ impl Tracer {
         in_doubt
     }
 
-    fn trace_pixels(&self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
-        self.each_row(
-            target,
-            || (),
-            |number, row, ()| {
-                let mut in_doubt = InDoubt::default();
-                let mut decisions = row.decisions.into_iter().flatten();
-                for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
-                    let ((decision, color), rung) = pixels.pixel(column as u32, number);
-                    in_doubt.count(rung);
-                    sample.copy_from_slice(&color);
-                    if let Some(place) = decisions.next() {
-                        *place = decision;
-                    }
+    fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
+        let progress = self.progress();
+        self.each_row(target, |number, row, _| {
+            let mut in_doubt = InDoubt::default();
+            let mut decisions = row.decisions.into_iter().flatten();
+            for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
+                let ((decision, color), rung) = pixels.pixel(column as u32, number);
+                in_doubt.count(rung);
+                sample.copy_from_slice(&color);
+                if let Some(place) = decisions.next() {
+                    *place = decision;
                 }
-                self.progress.add_row();
-                in_doubt
-            },
-        )
+            }
+            progress.add_row();
+            in_doubt
+        })
     }
 
     /// Traces every row, on all threads: `trace` gets its number and where it goes.
-    fn each_row<Scratch>(
-        &self,
+    fn each_row(
+        &mut self,
         target: Target<'_>,
-        scratch: impl Fn() -> Scratch + Sync,
         trace: impl Fn(u32, Target<'_>, &mut Scratch) -> InDoubt + Sync,
     ) -> InDoubt {
-        let band = |first: usize, band: Target<'_>| {
-            let mut scratch = scratch();
-            band.split(1)
-                .enumerate()
-                .map(|(row, target)| trace((first + row) as u32, target, &mut scratch))
-                .fold(InDoubt::default(), InDoubt::and)
+        let band = |first: usize, band: Target<'_>, local: &mut Local| {
+            for (row, target) in band.split(1).enumerate() {
+                let in_doubt = trace((first + row) as u32, target, &mut local.scratch);
+                local.in_doubt = local.in_doubt.and(in_doubt);
+            }
         };
-        let Some(pool) = &self.pool else {
-            return band(0, target);
-        };
-        let bands: Vec<_> = target.split(BAND).enumerate().collect();
-        pool.install(|| {
-            bands
-                .into_par_iter()
-                .map(|(number, target)| band(number * BAND, target))
-                .reduce(InDoubt::default, InDoubt::and)
-        })
+        match &mut self.local[..] {
+            [local] => band(0, target, inner(local)),
+            // What each thread locks is its own.
+            locals => self
+                .pool
+                .share(target.split(BAND), |thread, number, target| {
+                    band(number * BAND, target, &mut lock(&locals[thread]));
+                }),
+        }
+        let in_doubt = |local: &mut Mutex<Local>| std::mem::take(&mut inner(local).in_doubt);
+        let counts = self.local.iter_mut().map(in_doubt);
+        counts.fold(InDoubt::default(), InDoubt::and)
     }
+}
+
+/// What a mutex guards, without locking it.
+fn inner<T>(mutex: &mut Mutex<T>) -> &mut T {
+    mutex.get_mut().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What a thread keeps from row to row and from frame to frame, in cache lines of its own.
+#[repr(align(128))]
+#[derive(Default)]
+struct Local {
+    scratch: Scratch,
+    /// Of the rows of this frame that it has traced.
+    in_doubt: InDoubt,
 }
 
 /// How much of an image is written.

@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
+use crate::tracer::pool::Pool;
 
 /// Floats after which the three of a colour stand again at the same place of a cache line.
 const PATTERN: usize = 48;
@@ -34,26 +33,19 @@ impl fmt::Display for Stores {
 }
 
 /// Gives every pixel of `samples`, three floats each, the same colour; in as many threads as `pool` has, in this one without.
-pub(super) fn fill(
-    samples: &mut [f32],
-    color: [f32; 3],
-    stores: Stores,
-    pool: Option<&ThreadPool>,
-) {
+pub(super) fn fill(samples: &mut [f32], color: [f32; 3], stores: Stores, pool: Option<&mut Pool>) {
     match pool {
         None => fill_part(samples, color, stores),
         Some(pool) => {
-            let threads = pool.current_num_threads();
+            let threads = pool.threads();
             // Whole patterns, so that every part begins with a whole pixel.
             let part = samples
                 .len()
                 .div_ceil(threads)
                 .max(1)
                 .next_multiple_of(PATTERN);
-            pool.install(|| {
-                samples
-                    .par_chunks_mut(part)
-                    .for_each(|part| fill_part(part, color, stores));
+            pool.share(samples.chunks_mut(part), |_, _, part| {
+                fill_part(part, color, stores)
             });
         }
     }
@@ -184,14 +176,13 @@ mod tests {
     #[test]
     fn every_pixel_has_the_colour_whatever_the_alignment_and_the_threads() {
         let color = [0.25, 0.5, 1.0];
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
-        for pool in [None, Some(pool.unwrap())] {
+        for mut pool in [None, Some(Pool::new(3).unwrap())] {
             for stores in Stores::ALL {
                 for start in 0..20 {
                     for pixels in [0, 1, 5, 15, 16, 17, 33, 100, 1000] {
                         let mut samples = vec![-1.0; start + 3 * pixels + 1];
                         let inside = &mut samples[start..start + 3 * pixels];
-                        fill(inside, color, stores, pool.as_ref());
+                        fill(inside, color, stores, pool.as_mut());
                         assert!(inside.chunks_exact(3).all(|pixel| pixel == color));
                         let outside = samples[..start].iter().chain(samples.last());
                         assert!(outside.copied().all(|sample| sample == -1.0));

@@ -1,13 +1,12 @@
 //! Times: rounds of frames against filling the same picture as often, one after the other.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 
 use super::fill::{Stores, fill};
 use crate::tracer::TraceError;
+use crate::tracer::pool::Pool;
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
 /// Few samples of a slow kernel, many of a fast one: about this long for each row and number of threads.
@@ -64,67 +63,60 @@ pub struct Timing {
 }
 
 /// The fastest fill for one size and at most some threads.
-#[derive(Clone)]
 pub(super) struct Filler {
     stores: Stores,
-    /// `None` for one thread.
-    pool: Option<Arc<ThreadPool>>,
+    pool: Pool,
+    /// Whether all threads of the pool fill, and not this one alone.
+    shared: bool,
 }
 
 impl Filler {
     /// Tries every way and keeps the fastest.
     pub(super) fn fastest(threads: usize, image: &mut Image) -> Result<Filler, TraceError> {
-        let mut pools = vec![None];
-        if threads > 1 {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-            let pool = pool.map_err(|source| TraceError::Threads { threads, source })?;
-            pools.push(Some(Arc::new(pool)));
-        }
-        let mut fastest = Filler {
-            stores: Stores::Plain,
-            pool: None,
+        let pool = Pool::new(threads).map_err(|source| TraceError::Threads { threads, source })?;
+        let ways = if threads == 1 {
+            &[false][..]
+        } else {
+            &[false, true]
         };
+        let mut filler = Filler {
+            stores: Stores::Plain,
+            pool,
+            shared: false,
+        };
+        let mut fastest = (Stores::Plain, false);
         let mut least = Duration::MAX;
         // In turn, so that a slow moment of the machine hits all of them.
         for _ in 0..9 {
-            for (pool, stores) in pools
+            for way in ways
                 .iter()
-                .flat_map(|pool| Stores::ALL.map(|stores| (pool, stores)))
+                .flat_map(|&shared| Stores::ALL.map(|stores| (stores, shared)))
             {
-                let filler = Filler {
-                    stores,
-                    pool: pool.clone(),
-                };
+                (filler.stores, filler.shared) = way;
                 // Twice: the first finds the caches as another way has left them.
                 filler.fill(image);
                 let start = Instant::now();
                 filler.fill(image);
                 let time = start.elapsed();
                 if time < least {
-                    (fastest, least) = (filler, time);
+                    (fastest, least) = (way, time);
                 }
             }
         }
-        Ok(fastest)
+        (filler.stores, filler.shared) = fastest;
+        Ok(filler)
     }
 
-    fn fill(&self, image: &mut Image) {
+    fn fill(&mut self, image: &mut Image) {
         let color = std::hint::black_box([0.8, 0.8, 0.8]);
-        fill(
-            image.samples_mut(),
-            color,
-            self.stores,
-            self.pool.as_deref(),
-        );
+        let pool = self.shared.then_some(&mut self.pool);
+        fill(image.samples_mut(), color, self.stores, pool);
         std::hint::black_box(image.samples());
     }
 
     /// How it fills, for people.
     pub(super) fn how(&self) -> String {
-        let threads = self
-            .pool
-            .as_ref()
-            .map_or(1, |pool| pool.current_num_threads());
+        let threads = if self.shared { self.pool.threads() } else { 1 };
         let s = if threads == 1 { "" } else { "s" };
         format!("{} stores, {threads} thread{s}", self.stores)
     }
@@ -139,7 +131,7 @@ pub(super) fn time(
     threads: usize,
     (scene, stage, angles): (&Scene, Stage, &[f64]),
     image: &mut Image,
-    filler: &Filler,
+    filler: &mut Filler,
 ) -> Result<Option<Timing>, TraceError> {
     // One frame that does not count: what is made at first use is made.
     if let Some(&alpha) = angles.first() {
