@@ -21,6 +21,7 @@ mod rows;
 mod shading;
 mod simd;
 mod sphere;
+mod stream;
 mod surface;
 mod tetrahedron;
 mod vector;
@@ -458,10 +459,27 @@ impl Tracer {
         target: Target<'_>,
         trace: impl Fn(u32, Target<'_>, &mut Scratch) -> InDoubt + Sync,
     ) -> InDoubt {
+        let streamed = target.memory.is_none() && size_of_val(target.samples) > stream::PLAIN;
         let band = |first: usize, band: Target<'_>, local: &mut Local| {
             for (row, target) in band.split(1).enumerate() {
-                let in_doubt = trace((first + row) as u32, target, &mut local.scratch);
+                let number = (first + row) as u32;
+                let in_doubt = if streamed {
+                    let Local { scratch, row, .. } = &mut *local;
+                    row.resize(target.samples.len(), 0.0);
+                    let buffered = Target {
+                        samples: row,
+                        ..target
+                    };
+                    let in_doubt = trace(number, buffered, scratch);
+                    stream::copy(row, target.samples);
+                    in_doubt
+                } else {
+                    trace(number, target, &mut local.scratch)
+                };
                 local.in_doubt = local.in_doubt.and(in_doubt);
+            }
+            if streamed {
+                stream::finish();
             }
         };
         match &mut self.local[..] {
@@ -489,6 +507,8 @@ fn inner<T>(mutex: &mut Mutex<T>) -> &mut T {
 #[derive(Default)]
 struct Local {
     scratch: Scratch,
+    /// A row on its way into a picture that is streamed.
+    row: Vec<f32>,
     /// Of the rows of this frame that it has traced.
     in_doubt: InDoubt,
 }
