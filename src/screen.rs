@@ -17,6 +17,7 @@ mod placement;
 mod program;
 mod timed;
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use glam::{I64Vec2, UVec2};
@@ -120,28 +121,43 @@ impl Screen {
     /// [`ScreenError::Size`] unless `image` has the size of the screen, [`ScreenError::Memory`] and [`ScreenError::Refused`] where the
     /// driver cannot take it.
     pub fn upload(&mut self, image: &Image) -> Result<(), ScreenError> {
+        self.upload_rows(image, 0..self.size)
+    }
+
+    /// Replaces some rows of texels, counted from the bottom, by those of `image`: after [`Tracer::retrace`](crate::Tracer::retrace)
+    /// over a picture that was uploaded, the rows that it returns. Rows that the picture does not have are left out.
+    ///
+    /// # Errors
+    /// As [`Screen::upload`].
+    pub fn upload_rows(&mut self, image: &Image, rows: Range<u32>) -> Result<(), ScreenError> {
         if image.size() != self.size {
             return Err(ScreenError::Size {
                 image: image.size(),
                 screen: self.size,
             });
         }
+        let rows = rows.start..rows.end.min(self.size);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let width = 3 * self.size as usize;
+        let samples = &image.samples()[rows.start as usize * width..rows.end as usize * width];
         let gl = &self.gl;
         set_unpacking(gl);
-        // SAFETY: the context is current. With these pixel-store parameters and no buffer bound, the driver reads exactly
-        // size × size × 3 floats, and so many an image of this size has.
+        // SAFETY: the context is current, and the texture has these rows. With these pixel-store parameters and no buffer bound, the
+        // driver reads exactly as many rows of size × 3 floats, and so many the samples are.
         unsafe {
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.tex_sub_image_2d(
                 glow::TEXTURE_2D,
                 0,
                 0,
-                0,
+                rows.start as i32,
                 self.size as i32,
-                self.size as i32,
+                rows.len() as i32,
                 glow::RGB,
                 glow::FLOAT,
-                glow::PixelUnpackData::Slice(Some(as_bytes(image.samples()))),
+                glow::PixelUnpackData::Slice(Some(as_bytes(samples))),
             );
         }
         check(gl, "to take the picture as a texture", self.size)

@@ -28,6 +28,7 @@ mod vector;
 mod view;
 
 use std::io;
+use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, PoisonError};
@@ -232,13 +233,16 @@ impl Tracer {
     /// The same picture, into an image that may hold the frame that this tracer left there before: what has not changed is not
     /// written again. An image that holds anything else is written whole.
     ///
+    /// Returns rows, counted from the bottom, outside of which nothing was written; none where nothing was at all.
+    ///
     /// ```
     /// use firsthit::{Image, Kernel, Scene, Stage, Tracer};
     ///
     /// let (scene, mut tracer) = (Scene::builtin(), Tracer::new(Kernel::Exact, 1)?);
     /// let (mut image, mut whole) = (Image::new(64)?, Image::new(64)?);
     /// for alpha in [0.0, 0.3, 0.6] {
-    ///     tracer.retrace(&scene, Stage::Animation, alpha, &mut image)?;
+    ///     let rows = tracer.retrace(&scene, Stage::Animation, alpha, &mut image)?;
+    ///     assert!(rows.end < 64 || alpha == 0.0, "the uppermost row shows the background in every frame");
     ///     tracer.trace(&scene, Stage::Animation, alpha, &mut whole)?;
     ///     assert!(image == whole);
     /// }
@@ -253,8 +257,17 @@ impl Tracer {
         stage: Stage,
         alpha: f64,
         image: &mut Image,
-    ) -> Result<(), TraceError> {
-        self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)
+    ) -> Result<Range<u32>, TraceError> {
+        self.memory
+            .iter_mut()
+            .for_each(|row| row.is_written = false);
+        self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)?;
+        let is_written = |row: &Memory| row.is_written;
+        let first = self.memory.iter().position(is_written);
+        let last = self.memory.iter().rposition(is_written);
+        Ok(first
+            .zip(last)
+            .map_or(0..0, |(first, last)| first as u32..last as u32 + 1))
     }
 
     /// As [`Tracer::trace`], and what was decided for each pixel: N² decisions, rows from the bottom.
@@ -438,6 +451,9 @@ impl Tracer {
     fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
         let progress = self.progress();
         self.each_row(target, |number, row, _| {
+            if let Some(memory) = row.memory.and_then(<[Memory]>::first_mut) {
+                memory.is_written = true;
+            }
             let mut in_doubt = InDoubt::default();
             let mut decisions = row.decisions.into_iter().flatten();
             for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {

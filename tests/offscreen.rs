@@ -125,6 +125,87 @@ fn every_kind_of_float_comes_back_bit_for_bit() {
     }
 }
 
+/// A picture that is traced over the last one, by one tracer or another, and only its changed rows uploaded.
+#[test]
+fn the_rows_that_changed_are_all_that_need_be_uploaded() {
+    let size = 61;
+    let scene = |name| {
+        let path = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let scenes = [
+        Scene::builtin(),
+        scene("shared_faces"),
+        scene("light_from_below"),
+    ];
+    let kernels = [
+        (Kernel::Exact, 1),
+        (Kernel::Exact, 3),
+        (Kernel::Fast, 2),
+        (Kernel::Listing, 1),
+    ];
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, size) else {
+            continue;
+        };
+        let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
+        let mut image = Image::new(size).unwrap();
+        offscreen.show(&image).unwrap();
+        let mut random = 1u64;
+        let mut choose = |count: usize| {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (random >> 33) as usize % count
+        };
+        let (mut alpha, mut rows_uploaded) = (0.0, 0);
+        let (mut tracer, mut scene, mut stage) = (0, 0, Stage::Reflection);
+        for step in 0..1000 {
+            match choose(8) {
+                0 => tracer = choose(4),
+                1 => scene = choose(3),
+                2 => stage = Stage::ALL[choose(7)],
+                3 => {}
+                _ => alpha += [0.01, 0.3][choose(2)],
+            }
+            // The document's listings trace the document's scene.
+            let scene = if tracer == 3 { 0 } else { scene };
+            let rows = tracers[tracer]
+                .retrace(&scenes[scene], stage, alpha, &mut image)
+                .unwrap();
+            rows_uploaded += rows.len();
+            let shown = offscreen.show_rows(&image, rows.clone()).unwrap();
+            let what = format!("{} step {step} rows {rows:?}", through.name());
+            assert_same_bits(&shown, &image, &what);
+        }
+        // Rows that show only the background need not be uploaded again.
+        assert!(
+            rows_uploaded < 1000 * size as usize * 9 / 10,
+            "{rows_uploaded}"
+        );
+    }
+}
+
+#[test]
+fn rows_that_no_picture_has_are_left_out() {
+    for through in WAYS {
+        let Some(mut offscreen) = open(through, 9) else {
+            continue;
+        };
+        let [before, after] = [image(9, scattered(0)), image(9, scattered(1))];
+        offscreen.show(&before).unwrap();
+        for rows in [9..12, 4..4, 12..u32::MAX] {
+            let shown = offscreen.show_rows(&after, rows).unwrap();
+            assert_same_bits(&shown, &before, through.name());
+        }
+        let shown = offscreen.show_rows(&after, 3..u32::MAX).unwrap();
+        let width = 3 * 9;
+        let mut expected = before.clone();
+        expected.samples_mut()[3 * width..].copy_from_slice(&after.samples()[3 * width..]);
+        assert_same_bits(&shown, &expected, through.name());
+    }
+}
+
 #[test]
 fn no_sample_of_an_earlier_picture_stays() {
     for through in WAYS {

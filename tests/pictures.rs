@@ -229,3 +229,38 @@ fn a_picture_too_large_for_caches_has_the_same_bytes() {
         }
     }
 }
+
+/// One sphere, of which nothing but the shading changes.
+#[test]
+fn the_rows_of_a_sphere_in_another_light_are_told() {
+    let scenes = [-0.5, 0.5].map(|light| {
+        let text = format!(
+            "light.direction = [{light}, -0.5, -0.5]\n\n[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.25\ncolor = [0.9, 0.25, 0.2]\n"
+        );
+        Scene::from_toml(&text).unwrap()
+    });
+    for kernel in [Kernel::Exact, Kernel::Fast, Kernel::Double] {
+        let mut tracer = Tracer::new(kernel, 1).unwrap();
+        let mut image = Image::new(SIZE).unwrap();
+        let mut retrace = |scene| {
+            let before = image.clone();
+            let rows = tracer.retrace(scene, Stage::Shading, 0.0, &mut image);
+            let lines = |image: &Image| {
+                image
+                    .samples()
+                    .chunks(3 * SIZE as usize)
+                    .map(<[f32]>::to_vec)
+                    .collect::<Vec<_>>()
+            };
+            let (before, after) = (lines(&before), lines(&image));
+            let changed = |row: &u32| before[*row as usize] != after[*row as usize];
+            let changed: Vec<_> = (0..SIZE).filter(changed).collect();
+            (rows.unwrap(), changed)
+        };
+        assert_eq!(retrace(&scenes[0]).0, 0..SIZE);
+        let (rows, changed) = retrace(&scenes[1]);
+        assert!(changed.len() > 20 && changed.iter().all(|row| rows.contains(row)));
+        // The sphere is a quarter as high as the picture, and nothing else is written.
+        assert!(rows.len() < 40, "{rows:?}");
+    }
+}

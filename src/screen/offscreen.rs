@@ -1,6 +1,7 @@
 //! A screen without a window: the picture goes the whole way through OpenGL and comes back.
 
 use std::ffi::{CStr, c_void};
+use std::ops::Range;
 use std::rc::Rc;
 
 use glam::{IVec2, UVec2};
@@ -111,10 +112,18 @@ impl Offscreen {
     /// # Errors
     /// Those of [`Screen::upload`]; [`ScreenError::Image`] where there is no memory for the picture that is read back.
     pub fn show(&mut self, image: &Image) -> Result<Image, ScreenError> {
+        self.show_rows(image, 0..image.size())
+    }
+
+    /// The same with only some rows uploaded, as by [`Screen::upload_rows`]: the others come back as they were uploaded before.
+    ///
+    /// # Errors
+    /// As [`Offscreen::show`].
+    pub fn show_rows(&mut self, image: &Image, rows: Range<u32>) -> Result<Image, ScreenError> {
         self.context.make_current()?;
         let shown = self
             .screen
-            .upload(image)
+            .upload_rows(image, rows)
             .and_then(|()| self.framebuffer.read(&self.screen));
         self.context.release();
         shown

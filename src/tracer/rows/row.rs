@@ -14,6 +14,8 @@ use crate::tracer::ladder::Pixels;
 /// The columns of a row that were last given one colour.
 #[derive(Default)]
 pub(in crate::tracer) struct Memory {
+    /// Whether any of the row's samples has been written since this was last unset.
+    pub(in crate::tracer) is_written: bool,
     filled: Vec<(Columns, [u32; 3])>,
     /// The same of the frame that is being traced.
     next: Vec<(Columns, [u32; 3])>,
@@ -61,12 +63,14 @@ impl Row<'_> {
         for &((first, end), before) in &memory.filled {
             if before == bits && first < to && end > begin {
                 if first > begin {
+                    memory.is_written = true;
                     self.write((begin, first), paint);
                 }
                 begin = end;
             }
         }
         if begin < to {
+            memory.is_written = true;
             self.write((begin, to), paint);
         }
         self.memory = Some(memory);
@@ -87,6 +91,7 @@ impl Row<'_> {
         screen: Screen,
         shading: &mut Shading,
     ) {
+        self.mark_written();
         let ball = &shaded.ball;
         let ends = (screen.place(columns.0), screen.place(columns.1 - 1));
         let stretch = ball.stretch(self.y, ends);
@@ -111,6 +116,12 @@ impl Row<'_> {
         });
     }
 
+    fn mark_written(&mut self) {
+        if let Some(memory) = &mut self.memory {
+            memory.is_written = true;
+        }
+    }
+
     /// The row is written.
     pub(super) fn finish(self) -> InDoubt {
         if let Some(memory) = self.memory {
@@ -123,6 +134,7 @@ impl Row<'_> {
     /// Asks for each pixel by itself.
     pub(super) fn ask(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &impl Pixels) {
         for column in columns {
+            self.mark_written();
             let ((decision, color), rung) = pixels.pixel(column, self.number);
             let place = column as usize;
             self.samples[3 * place..3 * place + 3].copy_from_slice(&color);
