@@ -438,9 +438,9 @@ impl Floor {
     ) -> Floor {
         let screen = parts.screen;
         let zero = Bounded::exact(0.0);
-        let [one, third] = [1.0, 3.0].map(|x| Bounded::exact(1.0) / Bounded::exact(x));
+        let [one, three, ten] = [1.0, 3.0, 10.0].map(Bounded::exact);
+        let third = one / three;
         // An eye ray reaches the surface at t = Y/3 − (N/2) · height, and z = Z − 10 t there.
-        let ten = Bounded::exact(10.0);
         let height = floor.height_in_pixels;
         let sheet = Sheet {
             origin: Vector::new(
@@ -452,9 +452,16 @@ impl Floor {
             per_row: Vector::new(zero, zero, -(ten * third)),
             plane: Some(floor.surface.support),
         };
+        // Three times as large, nothing is a third and rounds: of a surface that is level with the rows, the border may lie on
+        // all pixels of one.
+        let scaled = [
+            sheet.origin * three,
+            sheet.per_column * three,
+            Vector::new(zero, zero, -ten),
+        ];
         let sides = floor
             .surface
-            .sides([sheet.origin, sheet.per_column, sheet.per_row]);
+            .sides(scaled, floor.surface.half_width * three);
         let sides = sides
             .map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, screen));
         let scene = picture.scene;

@@ -26,12 +26,16 @@ impl<R: Real> Surface<R> {
     }
 
     /// The four numbers that are not negative in the square, each as a constant and what a column and a row add to it, for points
-    /// `origin` + X · `per_column` + Y · `per_row` of its plane.
-    pub(super) fn sides(&self, [origin, per_column, per_row]: [Vector<R>; 3]) -> [[R; 3]; 4] {
+    /// `origin` + X · `per_column` + Y · `per_row` of its plane. Points and square may be scaled by one positive factor, which is in
+    /// `half` as well, half the length of a side.
+    pub(super) fn sides(
+        &self,
+        [origin, per_column, per_row]: [Vector<R>; 3],
+        half: R,
+    ) -> [[R; 3]; 4] {
         let [a, b] = self.along_sides(origin);
         let [a_column, b_column] = self.along_sides(per_column);
         let [a_row, b_row] = self.along_sides(per_row);
-        let half = self.half_width;
         [
             [half - a, -a_column, -a_row],
             [half + a, a_column, a_row],
