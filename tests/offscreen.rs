@@ -358,7 +358,7 @@ fn the_timed_ways_show_the_same_bytes() {
             let mut screen = TimedScreen::open(through, path, 64).expect(&what);
             assert!(screen.bytes().is_empty());
             for picture in &pictures {
-                let cost = screen.show(picture).expect(&what);
+                let cost = screen.show(picture, 0..64).expect(&what);
                 assert_eq!(cost.upload.is_zero(), path == Path::DrawPixels);
                 let pixels = picture.samples().chunks_exact(3);
                 let expected: Vec<u8> = pixels
@@ -370,7 +370,10 @@ fn the_timed_ways_show_the_same_bytes() {
                 assert!(screen.bytes() == expected, "{what}");
             }
             let other = Image::new(63).unwrap();
-            assert!(matches!(screen.show(&other), Err(ScreenError::Size { .. })));
+            assert!(matches!(
+                screen.show(&other, 0..64),
+                Err(ScreenError::Size { .. })
+            ));
         }
     }
 }

@@ -133,10 +133,6 @@ pub(super) fn time(
     image: &mut Image,
     filler: &mut Filler,
 ) -> Result<Option<Timing>, TraceError> {
-    // One frame that does not count: what is made at first use is made.
-    if let Some(&alpha) = angles.first() {
-        tracer.trace(scene, stage, alpha, image)?;
-    }
     // A picture of its own, so that each frame finds its predecessor.
     let mut kept = image.clone();
     let (mut ms, mut fill_ms) = (Vec::new(), Vec::new());
@@ -144,30 +140,23 @@ pub(super) fn time(
     let count = angles.len() as f64;
     let begin = Instant::now();
     while ms.len() < MIN_SAMPLES || (begin.elapsed() < TIME && ms.len() < MAX_SAMPLES) {
-        let start = Instant::now();
-        for &alpha in angles {
-            tracer.trace(scene, stage, alpha, image)?;
-        }
-        let round = start.elapsed().as_secs_f64();
+        let round = time_round(angles, |alpha| tracer.trace(scene, stage, alpha, image))?;
         std::hint::black_box(image.samples());
-
-        let start = Instant::now();
-        for _ in angles {
+        let fills = time_round(angles, |_| {
             filler.fill(image);
-        }
-        // A clock that stood still must not make a ratio infinite.
-        let fills = start.elapsed().as_secs_f64().max(1e-9);
-
-        let start = Instant::now();
-        for &alpha in angles {
-            tracer.retrace(scene, stage, alpha, &mut kept)?;
-        }
-        retained.push(start.elapsed().as_secs_f64() / fills);
+            Ok(())
+        })?;
+        let over = time_round(angles, |alpha| {
+            tracer
+                .retrace(scene, stage, alpha, &mut kept)
+                .map(|_rows| ())
+        })?;
         std::hint::black_box(kept.samples());
 
         ms.push(1e3 * round / count);
         fill_ms.push(1e3 * fills / count);
         ratios.push(round / fills);
+        retained.push(over / fills);
     }
     let samples = ms.len();
     let simd = match tracer.kernel() {
@@ -194,6 +183,23 @@ pub(super) fn time(
         fill_ratio,
         retained_fill_ratio,
     }))
+}
+
+/// Seconds for all frames at `angles`. The last of them comes before the first too, and does not count then: what is made at first use is
+/// made, threads are awake, and caches hold what a frame finds in them when others of its kind came before.
+fn time_round(
+    angles: &[f64],
+    mut frame: impl FnMut(f64) -> Result<(), TraceError>,
+) -> Result<f64, TraceError> {
+    if let Some(&last) = angles.last() {
+        frame(last)?;
+    }
+    let start = Instant::now();
+    for &alpha in angles {
+        frame(alpha)?;
+    }
+    // A clock that stood still must not make a ratio infinite.
+    Ok(start.elapsed().as_secs_f64().max(1e-9))
 }
 
 #[cfg(test)]

@@ -1,19 +1,21 @@
 //! What it costs to display a frame: the retained texture against the document's `glDrawPixels`.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use super::{ReportError, Request, Spread};
 use crate::camera::{ROUND, frame_angle};
 use crate::screen::{Cost, Path, ScreenError, Through, TimedScreen};
-use crate::{Image, Kernel, Tracer};
+use crate::tracer::TraceError;
+use crate::{Image, Kernel, Scene, Stage, Tracer};
 
-/// Frames for each way, unless they take too long.
-const FRAMES: u64 = 2 * ROUND;
+/// Rounds of frames for each way, unless they take too long.
+const ROUNDS: u64 = 2;
 
-/// About as long as the slowest of them may take in all.
-const TIME: Duration = Duration::from_secs(4);
+/// About as long as each way may take in all.
+const TIME: Duration = Duration::from_secs(1);
 
-/// At least this many frames.
+/// At least this many frames that count.
 const MIN_FRAMES: usize = 3;
 
 /// One way of frames to a screen of 8 bits a sample, and back.
@@ -32,9 +34,9 @@ pub struct Pipeline {
 /// Milliseconds a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Costs {
-    /// To trace it, on all threads.
+    /// To trace it over the frame before, on all threads.
     pub trace_ms: Spread,
-    /// To hand it to OpenGL as a texture; 0 for `glDrawPixels`, which does that while it draws, at every redraw anew.
+    /// To hand the rows that changed to OpenGL as a texture; 0 for `glDrawPixels`, which does that while it draws, at every redraw anew.
     pub upload_ms: Spread,
     /// To draw it.
     pub draw_ms: Spread,
@@ -42,7 +44,7 @@ pub struct Costs {
     pub read_back_ms: Spread,
 }
 
-/// Shows the frames of a round by every way in turn, traced by the first kernel on the first scene in the first stage.
+/// Shows rounds of frames by every way in turn, traced by the first kernel on the first scene in the first stage.
 pub(super) fn measure(
     request: &Request,
     threads: usize,
@@ -58,64 +60,120 @@ pub(super) fn measure(
     ) else {
         return Ok(Vec::new());
     };
-    let ways = [Through::Egl, Through::OsMesa]
+    let mut frames = Frames {
+        tracer: Tracer::new(kernel, threads)?,
+        scene: &named.scene,
+        stage,
+        image,
+    };
+    let mut ways: Vec<_> = [Through::Egl, Through::OsMesa]
         .into_iter()
-        .flat_map(|through| Path::ALL.map(|path| (through, path)));
-    let mut screens: Vec<_> = ways
-        .map(|(through, path)| {
-            let screen = TimedScreen::open(through, path, image.size());
-            (through, path, screen, Vec::new())
-        })
+        .flat_map(|through| Path::ALL.map(|path| Way::open(through, path, request.size)))
         .collect();
-    let mut tracer = Tracer::new(kernel, threads)?;
-    let mut traces = Vec::new();
-    if screens.iter().any(|(_, _, screen, _)| screen.is_ok()) {
+    for _ in 0..ROUNDS {
+        for way in &mut ways {
+            way.round(&mut frames)?;
+        }
+    }
+    Ok(ways.into_iter().map(|way| way.pipeline(kernel)).collect())
+}
+
+/// Frames, each traced over the one before.
+struct Frames<'f> {
+    tracer: Tracer,
+    scene: &'f Scene,
+    stage: Stage,
+    image: &'f mut Image,
+}
+
+impl Frames<'_> {
+    /// Traces one: how long that took, and the rows that changed.
+    fn trace(&mut self, alpha: f64) -> Result<(Duration, Range<u32>), TraceError> {
+        let start = Instant::now();
+        let rows = self
+            .tracer
+            .retrace(self.scene, self.stage, alpha, self.image)?;
+        Ok((start.elapsed(), rows))
+    }
+}
+
+/// One way, as it is measured.
+struct Way {
+    through: Through,
+    path: Path,
+    screen: Result<TimedScreen, ScreenError>,
+    traces: Vec<Duration>,
+    costs: Vec<Cost>,
+    /// How long it has taken so far.
+    time: Duration,
+}
+
+impl Way {
+    fn open(through: Through, path: Path, size: u32) -> Way {
+        Way {
+            through,
+            path,
+            screen: TimedScreen::open(through, path, size),
+            traces: Vec::new(),
+            costs: Vec::new(),
+            time: Duration::ZERO,
+        }
+    }
+
+    /// Shows a round of frames.
+    fn round(&mut self, frames: &mut Frames<'_>) -> Result<(), TraceError> {
+        let Ok(screen) = &mut self.screen else {
+            return Ok(());
+        };
         let begin = Instant::now();
-        for frame in 0..FRAMES {
-            let start = Instant::now();
-            tracer.trace(&named.scene, stage, frame_angle(frame), image)?;
-            traces.push(start.elapsed());
-            for (_, _, screen, costs) in &mut screens {
-                let shown = match screen {
-                    Ok(screen) => screen.show(image),
-                    Err(_) => continue,
-                };
-                match shown {
-                    Ok(cost) => costs.push(cost),
-                    Err(error) => *screen = Err(error),
+        // The first finds the picture of another way on the screen, and what is made at first use not made: it is uploaded whole, and does
+        // not count.
+        for frame in 0..=ROUND {
+            let (time, changed) = frames.trace(frame_angle(frame))?;
+            let image = &*frames.image;
+            let rows = if frame == 0 { 0..image.size() } else { changed };
+            match screen.show(image, rows) {
+                Ok(_) if frame == 0 => {}
+                Ok(cost) => {
+                    self.traces.push(time);
+                    self.costs.push(cost);
+                }
+                Err(error) => {
+                    self.screen = Err(error);
+                    break;
                 }
             }
-            if traces.len() > MIN_FRAMES && begin.elapsed() > TIME {
+            if self.costs.len() >= MIN_FRAMES && self.time + begin.elapsed() > TIME {
                 break;
             }
         }
+        self.time += begin.elapsed();
+        Ok(())
     }
-    let pipelines = screens
-        .into_iter()
-        .map(|(through, path, screen, costs)| Pipeline {
-            through,
-            path,
-            kernel,
-            costs: match screen {
-                Ok(_) => summary(&traces, &costs).ok_or_else(|| "nothing was shown".to_owned()),
-                Err(error) => Err(missing(&error)),
-            },
-        });
-    Ok(pipelines.collect())
-}
 
-/// The first frame makes what later ones find made: it does not count.
-fn summary(traces: &[Duration], costs: &[Cost]) -> Option<Costs> {
-    let ms = |time: &Duration| 1e3 * time.as_secs_f64();
-    let spread = |part: fn(&Cost) -> Duration| {
-        Spread::of(costs.iter().skip(1).map(|cost| ms(&part(cost))).collect())
-    };
-    Some(Costs {
-        trace_ms: Spread::of(traces.iter().skip(1).map(ms).collect())?,
-        upload_ms: spread(|cost| cost.upload)?,
-        draw_ms: spread(|cost| cost.draw)?,
-        read_back_ms: spread(|cost| cost.read_back)?,
-    })
+    fn pipeline(self, kernel: Kernel) -> Pipeline {
+        let spread = |times: &mut dyn Iterator<Item = Duration>| {
+            Spread::of(times.map(|time| 1e3 * time.as_secs_f64()).collect())
+        };
+        let part = |part: fn(&Cost) -> Duration| spread(&mut self.costs.iter().map(part));
+        let costs = || {
+            Some(Costs {
+                trace_ms: spread(&mut self.traces.iter().copied())?,
+                upload_ms: part(|cost| cost.upload)?,
+                draw_ms: part(|cost| cost.draw)?,
+                read_back_ms: part(|cost| cost.read_back)?,
+            })
+        };
+        Pipeline {
+            through: self.through,
+            path: self.path,
+            kernel,
+            costs: match &self.screen {
+                Ok(_) => costs().ok_or_else(|| "nothing was shown".to_owned()),
+                Err(error) => Err(missing(error)),
+            },
+        }
+    }
 }
 
 fn missing(error: &ScreenError) -> String {

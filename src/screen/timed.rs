@@ -1,6 +1,7 @@
 //! What a displayed frame costs, step by step: this crate's way, and the document's.
 
 use std::ffi::c_void;
+use std::ops::Range;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -156,13 +157,13 @@ impl TimedScreen {
         Ok((framebuffer, way, gl))
     }
 
-    /// Shows `image`, and says what each step cost.
+    /// Shows `image`, and says what each step cost. Of a texture only `rows` are replaced, as by [`Screen::upload_rows`].
     ///
     /// # Errors
     /// [`ScreenError`] unless `image` has the size of the screen and the driver takes it.
-    pub fn show(&mut self, image: &Image) -> Result<Cost, ScreenError> {
+    pub fn show(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
         self.context.make_current()?;
-        let cost = self.steps(image);
+        let cost = self.steps(image, rows);
         self.context.release();
         cost
     }
@@ -172,7 +173,7 @@ impl TimedScreen {
         &self.bytes
     }
 
-    fn steps(&mut self, image: &Image) -> Result<Cost, ScreenError> {
+    fn steps(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
         if image.size() != self.size {
             return Err(ScreenError::Size {
                 image: image.size(),
@@ -182,7 +183,7 @@ impl TimedScreen {
         self.framebuffer.bind();
         let start = Instant::now();
         if let Way::Texture(screen) = &mut self.way {
-            screen.upload(image)?;
+            screen.upload_rows(image, rows)?;
             self.finish();
         }
         let uploaded = Instant::now();
