@@ -3,12 +3,13 @@
 mod actions;
 mod events;
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
-use crate::{Kernel, Stage};
+use crate::{Image, Kernel, Stage};
 
 use super::action::Action;
 use super::clipboard::Clipboard;
@@ -26,6 +27,9 @@ use super::{Counts, Event, Options, ViewerError};
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
 const PATIENCE: Duration = Duration::from_millis(100);
+
+/// A picture that took no longer is traced over before the next one is there, which takes about as long.
+const SOON: Duration = Duration::from_millis(20);
 
 /// How soon to look again for a window that nothing can be drawn on and that does not say when that ends.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
@@ -58,9 +62,11 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         comparing,
         errors: None,
         shown: None,
+        picture: None,
         view: None,
         clipboard: None,
         uploaded: false,
+        texture: None,
         overdue: false,
         next_frame: started,
         modifiers: ModifiersState::empty(),
@@ -96,12 +102,16 @@ struct App<'a> {
     errors: Option<Errors>,
     /// The picture that came last.
     shown: Option<Traced>,
+    /// Its samples; `None` after they were given back, to be traced over.
+    picture: Option<Arc<Image>>,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     view: Option<View>,
     /// As long as there is a window.
     clipboard: Option<Clipboard>,
-    /// The texture holds the picture.
+    /// The texture holds what is to be shown.
     uploaded: bool,
+    /// The number of the traced picture that it holds, if it holds one.
+    texture: Option<u64>,
     /// The window is drawn again without waiting for the picture that is on its way: it took too long, or something else changed.
     overdue: bool,
     /// Not before this the playing animation is drawn again.
@@ -164,8 +174,45 @@ impl App<'_> {
     fn advance(&mut self, now: Instant) {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
+            self.give_back();
         }
         self.tracing.wish(self.wanted());
+    }
+
+    /// Lets the next picture be traced over the one that the texture holds, unless that is looked at, or may be wanted again before
+    /// the next one is there.
+    fn give_back(&mut self) {
+        let is_soon = |shown: &Traced| shown.time < SOON;
+        if self.uploaded
+            && self.errors.is_none()
+            && !self.sheet.names_pixels()
+            && self.shown.as_ref().is_some_and(is_soon)
+        {
+            self.picture = None;
+        }
+    }
+
+    /// Brings what is to be shown into the texture, where it is not there already and can be had. Whether it was not.
+    fn upload(&mut self) -> Result<bool, ViewerError> {
+        let (Some(view), Some(shown), false) = (&mut self.view, &self.shown, self.uploaded) else {
+            return Ok(false);
+        };
+        let all = 0..self.size;
+        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
+        let (image, rows, texture) = match (compared, &self.picture) {
+            (Some(compared), _) => (&compared.image, all, None),
+            (None, Some(picture)) => {
+                let follows = self.texture.is_some_and(|last| last + 1 == shown.number);
+                let rows = if follows { shown.changed.clone() } else { all };
+                (picture, rows, Some(shown.number))
+            }
+            (None, None) => return Ok(false),
+        };
+        self.times.upload = view.upload(image, rows, self.sheet.information)?;
+        self.counts.uploads += 1;
+        self.texture = texture;
+        self.uploaded = true;
+        Ok(true)
     }
 
     /// Shows the last picture, and sees to the next one if there is one to come.
@@ -185,11 +232,12 @@ impl App<'_> {
             // Opening the window was no part of the animation.
             self.playback.count_from(start - self.frame_time);
         }
+        let is_new = self.upload()?;
         // The next picture is traced while this one is drawn.
         if !self.is_last() {
             self.advance(start);
         }
-        if self.uploaded && self.waiting() && !overdue {
+        if self.uploaded && !is_new && self.waiting() && !overdue {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
@@ -198,30 +246,22 @@ impl App<'_> {
         let Some(view) = &mut self.view else {
             return Ok(());
         };
-        let Some(shown) = &self.shown else {
-            if overdue {
+        if !self.uploaded {
+            if overdue && self.shown.is_none() {
                 view.clear()?;
             } else {
                 event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             }
             return Ok(());
-        };
-        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
-        let image = compared.map_or(&shown.image, |compared| &compared.image);
-        let image = (!self.uploaded).then_some(&**image);
-        self.counts.uploads += u64::from(image.is_some());
+        }
         let waits = self.sheet.information;
-        let drawn = view.draw(image, (&mut self.sheet, &facts), waits)?;
-        self.uploaded = drawn.is_some();
-        let Some(cost) = drawn else {
+        let Some(draw) = view.draw((&mut self.sheet, &facts), waits)? else {
+            self.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());
         };
-        self.times = Times {
-            upload: cost.upload.unwrap_or(self.times.upload),
-            draw: cost.draw,
-            display: self.meter.rate(),
-        };
+        self.times.draw = draw;
+        self.times.display = self.meter.rate();
         self.counts.draws += 1;
         if self.counts.draws == 1 {
             (self.report)(Event::FirstFrame {
@@ -256,13 +296,16 @@ impl App<'_> {
             ..Facts::default()
         };
         if self.sheet.information {
-            facts.information = information(shown, self.times);
+            facts.information = information(shown, self.size, self.times);
         }
         if self.sheet.names_pixels()
             && let Some(place) = self.pointer.place()
             && let Some(pixel) = view.picture_pixel(place)
         {
-            facts.pixel = name_pixel(&shown.image, pixel);
+            // One that was given back a moment ago is followed by another.
+            if let Some(picture) = &self.picture {
+                facts.pixel = name_pixel(picture, pixel);
+            }
             facts.pointer = Some(view.in_points(place));
         }
         if let Some((pixel, _)) = &self.sheet.inspected {
@@ -340,10 +383,11 @@ impl App<'_> {
     fn receive(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         while let Some(reply) = self.tracing.reply() {
             match reply {
-                Reply::Traced(traced) => {
+                Reply::Traced(traced, image) => {
                     // A stage that was left meanwhile is not shown any more; an angle is, or one that moves fast would never be seen.
                     let Frame { stage, kernel, .. } = traced.frame;
                     if (stage, kernel) == (self.stage, self.kernel) {
+                        self.picture = Some(image);
                         self.shown = Some(traced);
                         self.uploaded = false;
                         self.draw_in_time(event_loop);
@@ -444,9 +488,15 @@ impl App<'_> {
         self.frame_time = view.frame_time();
         self.clipboard = Some(Clipboard::beside(view.window()));
         self.view = Some(view);
-        self.uploaded = false;
+        self.lose_texture();
         self.retitle();
         Ok(())
+    }
+
+    /// There is a new texture, with nothing in it.
+    fn lose_texture(&mut self) {
+        self.uploaded = false;
+        self.texture = None;
     }
 
     /// Ends the program where `result` is an error.

@@ -20,9 +20,8 @@ pub(super) struct Times {
 
 /// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many frames a second could be traced, and how
 /// many are displayed; the pixels in doubt.
-pub(super) fn information(traced: &Traced, times: Times) -> String {
+pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
     let frame = traced.frame;
-    let size = traced.image.size();
     let ms = |time: Duration| format!("{:.2}", 1e3 * time.as_secs_f64());
     let rate = 1.0 / traced.time.as_secs_f64().max(1e-9);
     let display = match times.display {

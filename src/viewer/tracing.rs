@@ -1,5 +1,6 @@
 //! Pictures traced, saved and explained on a thread of their own.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -22,11 +23,14 @@ pub(super) struct Frame {
     pub(super) kernel: Kernel,
 }
 
-/// A traced picture.
+/// What there is to say about a traced picture.
 #[derive(Clone)]
 pub(super) struct Traced {
     pub(super) frame: Frame,
-    pub(super) image: Arc<Image>,
+    /// Pictures are numbered as they are traced.
+    pub(super) number: u64,
+    /// All rows, from the bottom, that are not as in the picture with the number before.
+    pub(super) changed: Range<u32>,
     /// How long tracing it took.
     pub(super) time: Duration,
     pub(super) in_doubt: InDoubt,
@@ -42,7 +46,7 @@ enum Task {
 /// What it answers.
 pub(super) enum Reply {
     /// A picture that was wished for.
-    Traced(Traced),
+    Traced(Traced, Arc<Image>),
     /// What became of a picture that was to be saved.
     Saved(Result<PathBuf, SaveError>),
     /// A pixel, worked through.
@@ -59,8 +63,9 @@ pub(super) struct Studio {
     tracer: Tracer,
     threads: usize,
     size: u32,
-    /// Every picture that was ever handed out. One that nobody holds any more is traced over.
+    /// Every picture that was ever handed out, the one that was traced last at the end. One that nobody holds any more is traced over.
     pictures: Vec<Arc<Image>>,
+    /// What the last one is of, if it is still that.
     last: Option<Traced>,
     traces: u64,
 }
@@ -81,28 +86,36 @@ impl Studio {
     }
 
     /// The picture of `frame`; the last one is not traced again.
-    fn trace(&mut self, frame: Frame) -> Result<Traced, ViewerError> {
-        if let Some(last) = self.last.as_ref().filter(|last| last.frame == frame) {
-            return Ok(last.clone());
+    fn trace(&mut self, frame: Frame) -> Result<(Traced, Arc<Image>), ViewerError> {
+        if let (Some(last), Some(image)) = (&self.last, self.pictures.last())
+            && last.frame == frame
+        {
+            return Ok((last.clone(), image.clone()));
         }
         self.last = None;
         self.choose(frame.kernel)?;
         let mut image = self.free_picture()?;
         let start = Instant::now();
-        if let Some(image) = Arc::get_mut(&mut image) {
-            self.tracer
-                .trace(&self.scene, frame.stage, frame.alpha, image)?;
-        }
+        // Over another picture than its last one, the tracer writes all rows.
+        let changed = match Arc::get_mut(&mut image) {
+            Some(image) => self
+                .tracer
+                .retrace(&self.scene, frame.stage, frame.alpha, image),
+            None => Ok(0..0),
+        };
+        let time = start.elapsed();
+        self.pictures.push(image.clone());
+        let changed = changed?;
+        self.traces += 1;
         let traced = Traced {
             frame,
-            image: image.clone(),
-            time: start.elapsed(),
+            number: self.traces,
+            changed,
+            time,
             in_doubt: self.tracer.in_doubt(),
         };
-        self.traces += 1;
-        self.pictures.push(image);
         self.last = Some(traced.clone());
-        Ok(traced)
+        Ok((traced, image))
     }
 
     fn explain(&mut self, frame: Frame, pixel: UVec2) -> Result<String, ViewerError> {
@@ -120,14 +133,14 @@ impl Studio {
         Ok(())
     }
 
-    /// A picture that nobody looks at, taken from the others.
+    /// A picture that nobody looks at, taken from the others: that of the last frame, if it is one.
     fn free_picture(&mut self) -> Result<Arc<Image>, ViewerError> {
         let free = self
             .pictures
             .iter_mut()
-            .position(|picture| Arc::get_mut(picture).is_some());
+            .rposition(|picture| Arc::get_mut(picture).is_some());
         Ok(match free {
-            Some(free) => self.pictures.swap_remove(free),
+            Some(free) => self.pictures.remove(free),
             None => Arc::new(Image::new(self.size)?),
         })
     }
@@ -154,10 +167,12 @@ impl Tracing {
         let worker = Worker::start("tracing", wake, move |task, reply| {
             let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, _)) = task;
             let answer = match task {
-                Task::Trace(_) => studio.trace(frame).map(Reply::Traced),
+                Task::Trace(_) => studio
+                    .trace(frame)
+                    .map(|(traced, image)| Reply::Traced(traced, image)),
                 Task::Save(_, format) => studio
                     .trace(frame)
-                    .map(|traced| Reply::Saved(snapshot::save(&traced.image, frame.stage, format))),
+                    .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, format))),
                 Task::Explain(_, pixel) => studio
                     .explain(frame, pixel)
                     .map(|text| Reply::Explained(pixel, text)),

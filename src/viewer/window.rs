@@ -3,6 +3,7 @@
 mod opengl;
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -201,29 +202,37 @@ impl View {
         self.window.set_fullscreen(wanted);
     }
 
-    /// Draws the picture, uploading `image` first where it changed, and `sheet` over it. What it took, once it is on the way to the
-    /// display; `None` says that the surface was lost and everything on it made anew, so that `image` must be drawn again.
-    ///
-    /// Where `waits`, each step is waited for, so that the times are those of the steps.
+    /// Replaces rows of the picture, counted from the bottom, by those of `image`. What it took; where `waits`, until it is done.
+    pub(super) fn upload(
+        &mut self,
+        image: &Image,
+        rows: Range<u32>,
+        waits: bool,
+    ) -> Result<Duration, ViewerError> {
+        let Some(drawing) = &mut self.drawing else {
+            return Err(ViewerError::Lost);
+        };
+        let start = Instant::now();
+        drawing.screen.upload_rows(image, rows)?;
+        if waits {
+            drawing.screen.finish();
+        }
+        Ok(start.elapsed())
+    }
+
+    /// Draws the picture, and `sheet` over it. What it took, once it is on the way to the display; where `waits`, until it is done. `None`
+    /// says that the surface was lost and everything on it made anew, so that a picture must be uploaded again.
     pub(super) fn draw(
         &mut self,
-        image: Option<&Image>,
         (sheet, facts): (&mut Sheet, &Facts),
         waits: bool,
-    ) -> Result<Option<Cost>, ViewerError> {
+    ) -> Result<Option<Duration>, ViewerError> {
         let (placement, surface) = (self.placement(), self.surface);
         let scale = self.scale();
         let Some(drawing) = &mut self.drawing else {
             return Err(ViewerError::Lost);
         };
         let start = Instant::now();
-        if let Some(image) = image {
-            drawing.screen.upload(image)?;
-            if waits {
-                drawing.screen.finish();
-            }
-        }
-        let uploaded = Instant::now();
         drawing.screen.draw(surface, placement);
         if !sheet.is_empty() || facts.errors.is_some() {
             let overlay = match drawing.overlay.take() {
@@ -236,12 +245,8 @@ impl View {
         if waits {
             drawing.screen.finish();
         }
-        let drawn = Instant::now();
-        let cost = Cost {
-            upload: image.map(|_| uploaded - start),
-            draw: drawn - uploaded,
-        };
-        Ok(self.present()?.then_some(cost))
+        let time = start.elapsed();
+        Ok(self.present()?.then_some(time))
     }
 
     /// Draws a window without a picture.
@@ -292,14 +297,6 @@ impl View {
             Pos2::new(end.x as f32, (height - first.y) as f32) / self.scale(),
         )
     }
-}
-
-/// What it took to draw a frame.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cost {
-    /// `None` where there was nothing to upload.
-    pub(super) upload: Option<Duration>,
-    pub(super) draw: Duration,
 }
 
 impl Drawing {
