@@ -71,46 +71,57 @@ impl Run<'_> {
     }
 }
 
-/// As many pixels as f64 lanes: where they are hit, and bit by bit who is in shadow and who is known.
+/// As many pixels as f64 lanes: where they are hit, and bit by bit which are turned away from the light, and of which all this is known.
 struct Hits<V> {
     q: V,
     s: V,
     /// n·l.
     light: V,
     zone: usize,
-    in_shadow: u64,
+    turned_away: u64,
     known: u64,
+}
+
+/// A linear form along a row.
+#[derive(Clone, Copy)]
+struct Along<V> {
+    row: V,
+    across: V,
+    out: V,
 }
 
 /// Shades a run of pixels that see a sphere.
 #[inline(always)]
 pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
+    let ball = &shaded.ball;
     let width = S::f32s::LEN;
     let half = S::f64s::LEN;
-    let m = shaded.ball.off.at(run.y);
+    let m = ball.off.at(run.y);
+    let light = along(simd, &ball.light, m);
     let count = run.samples.len() / 3;
     let zero = S::f32s::splat(simd, 0.0);
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let low = hits(simd, shaded, &run.shading.in_reach, m, x);
-        let high = hits(
-            simd,
-            shaded,
-            &run.shading.in_reach,
-            m,
-            x + 3.0 * half as f64,
-        );
-        let in_shadow = low.in_shadow | high.in_shadow << half;
+        let low = hits(simd, ball, &light, m, x);
+        let high = hits(simd, ball, &light, m, x + 3.0 * half as f64);
+        let mut in_shadow = low.turned_away | high.turned_away << half;
         let mut known = low.known | high.known << half;
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
+        if ball.shadows && in_shadow & all != all {
+            let casters = &shaded.casters;
+            let (low_dark, low_known) = shadowed(simd, ball, casters, run.shading, m, &low);
+            let (high_dark, high_known) = shadowed(simd, ball, casters, run.shading, m, &high);
+            in_shadow |= low_dark | high_dark << half;
+            known &= low_known | high_known << half;
+        }
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
             fill(simd, samples, run.in_shadow);
         } else {
-            let (low_lower, low_upper) = lit(simd, &shaded.ball, m, &low);
-            let (high_lower, high_upper) = lit(simd, &shaded.ball, m, &high);
+            let (low_lower, low_upper) = lit(simd, ball, m, &low);
+            let (high_lower, high_upper) = lit(simd, ball, m, &high);
             let dark = S::mask32s::from_bitmask(simd, in_shadow);
             let mut channels = [zero; 3];
             for i in 0..3 {
@@ -147,47 +158,62 @@ pub(super) fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: 
     }
 }
 
-/// A linear form along a row.
 #[inline(always)]
-fn value<S: Simd>(simd: S, form: &Form, m: f64, q: S::f64s, s: S::f64s) -> S::f64s {
-    S::f64s::splat(simd, form.of_row(m)) + q * form.across + s * form.out
+fn along<S: Simd>(simd: S, form: &Form, m: f64) -> Along<S::f64s> {
+    Along {
+        row: S::f64s::splat(simd, form.of_row(m)),
+        across: S::f64s::splat(simd, form.across),
+        out: S::f64s::splat(simd, form.out),
+    }
+}
+
+/// The value of a form at some pixels.
+#[inline(always)]
+fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S::f64s {
+    form.row + q * form.across + s * form.out
 }
 
 #[inline(always)]
-fn hits<S: Simd>(
-    simd: S,
-    shaded: &ShadedBall,
-    in_reach: &[usize],
-    m: f64,
-    x: f64,
-) -> Hits<S::f64s> {
-    let ball = &shaded.ball;
+fn hits<S: Simd>(simd: S, ball: &Ball, light: &Along<S::f64s>, m: f64, x: f64) -> Hits<S::f64s> {
     let q = places::<S>(simd, 0) + x - ball.center;
     let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
     let zone = usize::from(squared.simd_lt(ball.least[0]).any_true());
-    let mut known = squared.simd_ge(ball.least[1]);
+    let known = squared.simd_ge(ball.least[1]);
     let s = squared.sqrt();
-    let light = value(simd, &ball.light, m, q, s);
-    let mut in_shadow = S::mask64s::splat(simd, false);
-    if ball.shadows {
-        let error = ball.light.errors[zone];
-        in_shadow = light.simd_lt(-error);
-        let mut settled = in_shadow | light.simd_gt(error);
-        for &caster in in_reach {
-            let (inside, outside) = shadowed(simd, &shaded.casters[caster], zone, m, q, s);
-            in_shadow |= inside;
-            settled &= inside | outside;
-        }
-        known &= in_shadow | settled;
-    }
+    let light = value::<S>(light, q, s);
+    let turned_away = if ball.shadows {
+        light.simd_lt(-ball.light.errors[zone]).to_bitmask()
+    } else {
+        0
+    };
     Hits {
         q,
         s,
         light,
         zone,
-        in_shadow: in_shadow.to_bitmask(),
+        turned_away,
         known: known.to_bitmask(),
     }
+}
+
+/// Which pixels are in shadow, and of which it is known.
+#[inline(always)]
+fn shadowed<S: Simd>(
+    simd: S,
+    ball: &Ball,
+    casters: &[Caster],
+    shading: &Shading,
+    m: f64,
+    hits: &Hits<S::f64s>,
+) -> (u64, u64) {
+    let mut in_shadow = S::mask64s::from_bitmask(simd, hits.turned_away);
+    let mut settled = in_shadow | hits.light.simd_gt(ball.light.errors[hits.zone]);
+    for &caster in &shading.in_reach {
+        let (inside, outside) = behind(simd, &casters[caster], m, hits);
+        in_shadow |= inside;
+        settled &= inside | outside;
+    }
+    (in_shadow.to_bitmask(), (in_shadow | settled).to_bitmask())
 }
 
 /// Bounds on the samples of pixels in the light.
@@ -206,7 +232,7 @@ fn lit<S: Simd>(
     }
     let mut highlight = 0;
     if let Some(form) = &ball.halfway {
-        let x = value(simd, form, m, hits.q, hits.s);
+        let x = value::<S>(&along(simd, form, m), hits.q, hits.s);
         if x.simd_gt(ball.highlight).any_true() {
             highlight = 1;
             let power = power(simd, x.max(ball.highlight), ball.exponent);
@@ -243,20 +269,19 @@ fn power<S: Simd>(simd: S, x: S::f64s, exponent: u32) -> S::f64s {
 
 /// Which pixels are certainly in a caster's shadow, and which certainly are not.
 #[inline(always)]
-fn shadowed<S: Simd>(
+fn behind<S: Simd>(
     simd: S,
     caster: &Caster,
-    zone: usize,
     m: f64,
-    q: S::f64s,
-    s: S::f64s,
+    hits: &Hits<S::f64s>,
 ) -> (S::mask64s, S::mask64s) {
+    let &Hits { q, s, zone, .. } = hits;
     match caster {
         Caster::Cell(forms) => {
             let mut inside = S::mask64s::splat(simd, true);
             let mut outside = S::mask64s::splat(simd, false);
             for form in forms {
-                let depth = value(simd, form, m, q, s);
+                let depth = value::<S>(&along(simd, form, m), q, s);
                 inside &= depth.simd_gt(form.errors[zone]);
                 outside |= depth.simd_lt(-form.errors[zone]);
             }
@@ -269,10 +294,10 @@ fn shadowed<S: Simd>(
                 reach,
                 errors,
             } = &**passing;
-            let ahead = value(simd, before, m, q, s);
-            let x = value(simd, &moment[0], m, q, s);
-            let y = value(simd, &moment[1], m, q, s);
-            let z = value(simd, &moment[2], m, q, s);
+            let ahead = value::<S>(&along(simd, before, m), q, s);
+            let x = value::<S>(&along(simd, &moment[0], m), q, s);
+            let y = value::<S>(&along(simd, &moment[1], m), q, s);
+            let z = value::<S>(&along(simd, &moment[2], m), q, s);
             let depth = S::f64s::splat(simd, *reach) - (x * x + y * y + z * z);
             (
                 ahead.simd_gt(before.errors[zone]) & depth.simd_gt(errors[zone]),

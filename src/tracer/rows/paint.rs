@@ -86,17 +86,20 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
     let first = V::from_slice(simd, &paint.samples[..width]);
     let second = V::from_slice(simd, &paint.samples[width..2 * width]);
     let third = V::from_slice(simd, &paint.samples[2 * width..3 * width]);
+    // The last block may lie on part of the one before it.
     let last = samples.len() - 3 * width;
-    let mut at = 0;
-    loop {
-        let block = &mut samples[at..at + 3 * width];
-        first.store_slice(&mut block[..width]);
-        second.store_slice(&mut block[width..2 * width]);
-        third.store_slice(&mut block[2 * width..]);
-        if at == last {
-            return;
-        }
-        // The last block may lie on part of the one before it.
-        at = (at + 3 * width).min(last);
+    for block in samples.chunks_exact_mut(3 * width) {
+        put(block, first, second, third);
     }
+    put(&mut samples[last..], first, second, third);
+}
+
+/// By value, so that the vectors stay in registers.
+#[inline(always)]
+fn put<S: Simd, V: SimdFloat<S, Element = f32>>(block: &mut [f32], first: V, second: V, third: V) {
+    let (one, rest) = block.split_at_mut(V::LEN);
+    let (two, three) = rest.split_at_mut(V::LEN);
+    first.store_slice(one);
+    second.store_slice(two);
+    third.store_slice(three);
 }
