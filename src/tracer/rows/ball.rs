@@ -15,6 +15,9 @@ use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
+/// The logarithm of a power that nobody sees: e⁻⁴¹ < 2⁻⁵⁹.
+const CUT: f64 = -41.0;
+
 /// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have a small s: those with
 /// s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
 pub(super) const ZONES: usize = 2;
@@ -75,6 +78,18 @@ pub(super) struct Stretch {
     s: (f64, f64),
 }
 
+/// The way halfway between the light and the eye.
+pub(super) struct Halfway {
+    /// n·h.
+    pub(super) form: Form,
+    /// R h, in the axes of q, m and s.
+    pub(super) at: [f64; 3],
+    /// In each zone a bound on n times the error of 1 − n·h: a constant, and what 1 − n·h is multiplied with.
+    pub(super) errors: [[f64; 2]; ZONES],
+    /// 2¹⁻ⁿ.
+    pub(super) least: f64,
+}
+
 /// What is known about q, m and s of any pixel: a bound on their magnitudes, and on their errors.
 #[derive(Clone, Copy)]
 struct Known {
@@ -84,16 +99,21 @@ struct Known {
     out: [f64; ZONES],
 }
 
+/// A vector in the axes of q, m and s.
+fn in_axes(vector: Vector<Bounded>) -> [Bounded; 3] {
+    let root = Bounded::exact(109.0).sqrt();
+    let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+    [
+        vector.x,
+        (ten * vector.y - three * vector.z) / root,
+        (three * vector.y + ten * vector.z) / root,
+    ]
+}
+
 impl Known {
     /// vector · n + constant, as a form.
     fn form(&self, constant: Bounded, vector: Vector<Bounded>) -> Form {
-        let root = Bounded::exact(109.0).sqrt();
-        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
-        let factors = [
-            vector.x,
-            (ten * vector.y - three * vector.z) / root,
-            (three * vector.y + ten * vector.z) / root,
-        ];
+        let factors = in_axes(vector);
         let magnitudes: f64 = factors.iter().map(|f| f.value().abs() * self.radius).sum();
         let errors = self.out.map(|out| {
             // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
@@ -114,6 +134,37 @@ impl Known {
             magnitude: (constant.value().abs() + magnitudes) * MORE,
         }
     }
+
+    /// `h` is of length 1, `radius` the sphere's, n the exponent.
+    fn halfway(&self, h: Vector<Bounded>, radius: Bounded, n: f64) -> Halfway {
+        let at = in_axes(h).map(|component| component * radius);
+        // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
+        // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
+        // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
+        let steepest = 1.0 / n.sqrt();
+        let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
+        let limit = -libm::expm1(CUT / n);
+        let errors = self.out.map(|out| {
+            let known = [self.across, self.off, out];
+            let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
+            let off = off / radius.value() * MORE;
+            // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1 products, by u of what they give.
+            let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
+            let slope = n * (off / steepest + inexact) * MORE;
+            let tame = constant + slope * limit < 1.0 / 64.0;
+            if tame {
+                [constant, slope]
+            } else {
+                [f64::INFINITY, 0.0]
+            }
+        });
+        Halfway {
+            form: self.form(Bounded::exact(0.0), h.divided_by(radius)),
+            at: at.map(Bounded::value),
+            errors,
+            least: libm::exp2(1.0 - n),
+        }
+    }
 }
 
 /// A sphere whose pixels are to be shaded.
@@ -129,8 +180,8 @@ pub(super) struct Ball {
     pub(super) light: Form,
     /// 1/R.
     pub(super) inverse_radius: f64,
-    /// n·h; `None` where there is no highlight.
-    pub(super) halfway: Option<Form>,
+    /// `None` where there is no highlight.
+    pub(super) halfway: Option<Halfway>,
     pub(super) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(super) highlight: f64,
@@ -146,8 +197,8 @@ pub(super) struct Channel {
     pub(super) ambient: f64,
     pub(super) diffuse: f64,
     pub(super) specular: f64,
-    /// In each zone, a bound on the error without and with the highlight.
-    pub(super) errors: [[f64; 2]; ZONES],
+    /// In each zone, a bound on the error, but for what the power's adds.
+    pub(super) errors: [f64; ZONES],
 }
 
 impl Ball {
@@ -176,30 +227,28 @@ impl Ball {
         let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
         let zero = Bounded::exact(0.0);
         let light = known.form(zero, unit(shading.to_light_unit()));
-        let halfway = shading.halfway().map(|h| known.form(zero, unit(h)));
         let exponent = shading.exponent();
         let n = f64::from(exponent);
-        // The error of (n·h)ⁿ. With x, y ≤ 1 + ε it is |xⁿ − yⁿ| ≤ n |x − y| (1 + ε)ⁿ⁻¹, and n − 1 products round. Where it is
-        // small it is left out, or put at 2⁻⁵⁹.
+        let halfway = shading
+            .halfway()
+            .map(|h| known.halfway(h, sphere.radius, n));
+        // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that is, if its error is no more than that of a
+        // factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
-        let power = |zone: usize| {
-            let slope = halfway.map_or(0.0, |form| n * (form.errors[zone] + U));
-            let tame = slope < 1.0 / 64.0;
-            if tame {
-                [tiny, slope * 1.05 + tiny]
-            } else {
-                [f64::INFINITY; 2]
-            }
-        };
+        let left_out: [f64; ZONES] = std::array::from_fn(|zone| {
+            let error = halfway.as_ref().map_or(0.0, |h| h.form.errors[zone]);
+            let tame = n * (error + U) < 1.0 / 64.0;
+            if tame { tiny } else { f64::INFINITY }
+        });
         let channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let parts = coefficients.map(|coefficient| coefficient * color);
             let [a, d, s] = parts;
             let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
-            let error = |light: f64, power: f64| {
+            let error = |light: f64, left_out: f64| {
                 let specular = if s.is_zero() {
                     0.0
                 } else {
-                    s.error() * (1.0 + power) + s.value().abs() * power
+                    1.1 * s.error() + s.value().abs() * left_out
                 };
                 // |n·l| ≤ 1, but for its error; two products and two sums round.
                 let diffuse = d.error() * (1.0 + light) + d.value().abs() * light;
@@ -209,9 +258,7 @@ impl Ball {
                 ambient: a.value(),
                 diffuse: d.value(),
                 specular: s.value(),
-                errors: std::array::from_fn(|zone| {
-                    power(zone).map(|power| error(light.errors[zone], power))
-                }),
+                errors: std::array::from_fn(|zone| error(light.errors[zone], left_out[zone])),
             }
         };
         let [red, green, blue] = shading.coefficients();
@@ -226,8 +273,8 @@ impl Ball {
             inverse_radius: 1.0 / sphere.radius.value(),
             halfway,
             exponent,
-            // (1 − x)ⁿ ≤ e^−nx, and e^−41 < 2⁻⁵⁹.
-            highlight: libm::exp(-41.0 / n),
+            // (1 − x)ⁿ ≤ e^−nx.
+            highlight: libm::exp(CUT / n),
             channels: [
                 channel(color.x, red),
                 channel(color.y, green),

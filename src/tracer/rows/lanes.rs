@@ -5,7 +5,7 @@ use std::ops::Range;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::ball::{Ball, Form, Stretch, ZONES};
+use super::ball::{Ball, Form, Halfway, Stretch, ZONES};
 use super::paint::{Paint, fill};
 use super::shape::{MORE, Screen, U, places};
 use super::solids::ShadedBall;
@@ -230,24 +230,49 @@ fn lit<S: Simd>(
     for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
         *sample = light * channel.diffuse + channel.ambient;
     }
-    let mut highlight = 0;
-    if let Some(form) = &ball.halfway {
-        let x = value::<S>(&along(simd, form, m), hits.q, hits.s);
+    let mut errors = [zero; 3];
+    for (error, channel) in errors.iter_mut().zip(&ball.channels) {
+        *error = S::f64s::splat(simd, channel.errors[hits.zone]);
+    }
+    if let Some(halfway) = &ball.halfway {
+        let x = value::<S>(&along(simd, &halfway.form, m), hits.q, hits.s);
         if x.simd_gt(ball.highlight).any_true() {
-            highlight = 1;
-            let power = power(simd, x.max(ball.highlight), ball.exponent);
-            for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
-                *sample += power * channel.specular;
+            let (power, power_error) = highlight(simd, ball, halfway, m, hits);
+            for i in 0..3 {
+                let specular = ball.channels[i].specular;
+                samples[i] += power * specular;
+                errors[i] += power_error * specular.abs();
             }
         }
     }
     let (mut lower, mut upper) = (samples, samples);
     for i in 0..3 {
-        let error = ball.channels[i].errors[hits.zone][highlight];
-        lower[i] -= error;
-        upper[i] += error;
+        lower[i] -= errors[i];
+        upper[i] += errors[i];
     }
     (lower, upper)
+}
+
+/// (n·h)ⁿ, and a bound on its error.
+#[inline(always)]
+fn highlight<S: Simd>(
+    simd: S,
+    ball: &Ball,
+    halfway: &Halfway,
+    m: f64,
+    hits: &Hits<S::f64s>,
+) -> (S::f64s, S::f64s) {
+    let [across, off, out] = halfway.at;
+    let (across, off, out) = (hits.q - across, m - off, hits.s - out);
+    let squared = across * across + out * out + off * off;
+    // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight is bright.
+    let scale = 0.5 * ball.inverse_radius * ball.inverse_radius;
+    let missing = (squared * scale).min(1.0 - ball.highlight);
+    let power = power(simd, -missing + 1.0, ball.exponent);
+    let [constant, slope] = halfway.errors[hits.zone];
+    // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for max(X, x) instead of x.
+    let steep = power * (2.0 * 1.06) + 1.06 * halfway.least;
+    (power, (missing * slope + constant) * steep)
 }
 
 /// xⁿ, by squaring.

@@ -127,7 +127,8 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
         *sample = light * V::Element::of(channel.diffuse) + V::Element::of(channel.ambient);
     }
-    if let Some(h) = &ball.halfway {
+    if let Some(halfway) = &ball.halfway {
+        let h = &halfway.form;
         let x = value::<S, V>(simd, h, m, q, s);
         let bright = x.simd_gt(V::splat(simd, V::Element::of(ball.highlight)));
         if bright.any_true() {
