@@ -25,14 +25,14 @@ pub(super) const ZONES: usize = 2;
 /// What R is divided by for the least s of each zone.
 const DEPTHS: [f64; ZONES] = [8.0, 128.0];
 
-/// constant + across · q + off · m + out · s, and in each zone a bound on its error in f64.
+/// constant + across · q + off · m + out · s, and a bound on its error in f64 in any zone.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
     constant: f64,
     pub(super) across: f64,
     off: f64,
     pub(super) out: f64,
-    pub(super) errors: [f64; ZONES],
+    pub(super) error: f64,
     /// A bound on its magnitude.
     pub(super) magnitude: f64,
 }
@@ -63,11 +63,7 @@ impl Form {
 
     /// Whether it is certainly less than 0 in every pixel of a stretch.
     pub(super) fn is_negative_along(&self, stretch: &Stretch) -> bool {
-        self.along(stretch).1 < -self.largest_error()
-    }
-
-    fn largest_error(&self) -> f64 {
-        self.errors.iter().copied().fold(0.0, f64::max)
+        self.along(stretch).1 < -self.error
     }
 }
 
@@ -84,8 +80,8 @@ pub(super) struct Halfway {
     pub(super) form: Form,
     /// R h, in the axes of q, m and s.
     pub(super) at: [f64; 3],
-    /// In each zone a bound on n times the error of 1 − n·h: a constant, and what 1 − n·h is multiplied with.
-    pub(super) errors: [[f64; 2]; ZONES],
+    /// A bound on n times the error of 1 − n·h in any zone: a constant, and what 1 − n·h is multiplied with.
+    pub(super) errors: [f64; 2],
     /// 2¹⁻ⁿ.
     pub(super) least: f64,
 }
@@ -114,25 +110,31 @@ impl Known {
     /// vector · n + constant, as a form.
     fn form(&self, constant: Bounded, vector: Vector<Bounded>) -> Form {
         let factors = in_axes(vector);
-        let magnitudes: f64 = factors.iter().map(|f| f.value().abs() * self.radius).sum();
-        let errors = self.out.map(|out| {
-            // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
-            let terms = factors.iter().zip([self.across, self.off, out]);
-            let carried: f64 = terms
-                .map(|(factor, error)| {
-                    factor.error() * (self.radius + error) + factor.value().abs() * error
-                })
-                .sum();
-            (constant.error() + carried + 8.0 * U * (constant.value().abs() + magnitudes)) * MORE
-        });
         Form {
             constant: constant.value(),
             across: factors[0].value(),
             off: factors[1].value(),
             out: factors[2].value(),
-            errors,
-            magnitude: (constant.value().abs() + magnitudes) * MORE,
+            error: self.error(constant, &factors, self.out[ZONES - 1]),
+            magnitude: (constant.value().abs() + self.magnitude(&factors)) * MORE,
         }
+    }
+
+    fn magnitude(&self, factors: &[Bounded; 3]) -> f64 {
+        factors.iter().map(|f| f.value().abs() * self.radius).sum()
+    }
+
+    /// A bound on the error of a form where that of s is at most `out`.
+    fn error(&self, constant: Bounded, factors: &[Bounded; 3], out: f64) -> f64 {
+        // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
+        let terms = factors.iter().zip([self.across, self.off, out]);
+        let carried: f64 = terms
+            .map(|(factor, error)| {
+                factor.error() * (self.radius + error) + factor.value().abs() * error
+            })
+            .sum();
+        let rounded = 8.0 * U * (constant.value().abs() + self.magnitude(factors));
+        (constant.error() + carried + rounded) * MORE
     }
 
     /// `h` is of length 1, `radius` the sphere's, n the exponent.
@@ -144,20 +146,18 @@ impl Known {
         let steepest = 1.0 / n.sqrt();
         let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
         let limit = -libm::expm1(CUT / n);
-        let errors = self.out.map(|out| {
-            let known = [self.across, self.off, out];
-            let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
-            let off = off / radius.value() * MORE;
-            // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1 products, by u of what they give.
-            let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
-            let slope = n * (off / steepest + inexact) * MORE;
-            let tame = constant + slope * limit < 1.0 / 64.0;
-            if tame {
-                [constant, slope]
-            } else {
-                [f64::INFINITY, 0.0]
-            }
-        });
+        let known = [self.across, self.off, self.out[ZONES - 1]];
+        let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
+        let off = off / radius.value() * MORE;
+        // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1 products, by u of what they give.
+        let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
+        let slope = n * (off / steepest + inexact) * MORE;
+        let tame = constant + slope * limit < 1.0 / 64.0;
+        let errors = if tame {
+            [constant, slope]
+        } else {
+            [f64::INFINITY, 0.0]
+        };
         Halfway {
             form: self.form(Bounded::exact(0.0), h.divided_by(radius)),
             at: at.map(Bounded::value),
@@ -187,6 +187,8 @@ pub(super) struct Ball {
     pub(super) highlight: f64,
     /// Red, green and blue.
     pub(super) channels: [Channel; 3],
+    /// In each zone, a bound on the error of any channel, but for what the power's adds.
+    pub(super) errors: [f64; ZONES],
     /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
     pub(super) shadows: bool,
 }
@@ -197,8 +199,6 @@ pub(super) struct Channel {
     pub(super) ambient: f64,
     pub(super) diffuse: f64,
     pub(super) specular: f64,
-    /// In each zone, a bound on the error, but for what the power's adds.
-    pub(super) errors: [f64; ZONES],
 }
 
 impl Ball {
@@ -226,7 +226,8 @@ impl Ball {
         };
         let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
         let zero = Bounded::exact(0.0);
-        let light = known.form(zero, unit(shading.to_light_unit()));
+        let to_light = unit(shading.to_light_unit());
+        let light = known.form(zero, to_light);
         let exponent = shading.exponent();
         let n = f64::from(exponent);
         let halfway = shading
@@ -235,16 +236,18 @@ impl Ball {
         // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that is, if its error is no more than that of a
         // factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
-        let left_out: [f64; ZONES] = std::array::from_fn(|zone| {
-            let error = halfway.as_ref().map_or(0.0, |h| h.form.errors[zone]);
-            let tame = n * (error + U) < 1.0 / 64.0;
-            if tame { tiny } else { f64::INFINITY }
-        });
-        let channel = |color: Bounded, coefficients: [Bounded; 3]| {
+        let form_error = halfway.as_ref().map_or(0.0, |h| h.form.error);
+        let tame = n * (form_error + U) < 1.0 / 64.0;
+        let left_out = if tame { tiny } else { f64::INFINITY };
+        let light_errors = known
+            .out
+            .map(|out| known.error(zero, &in_axes(to_light), out));
+        let mut errors = [0.0_f64; ZONES];
+        let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let parts = coefficients.map(|coefficient| coefficient * color);
             let [a, d, s] = parts;
             let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
-            let error = |light: f64, left_out: f64| {
+            let error = |light: f64| {
                 let specular = if s.is_zero() {
                     0.0
                 } else {
@@ -254,14 +257,21 @@ impl Ball {
                 let diffuse = d.error() * (1.0 + light) + d.value().abs() * light;
                 (a.error() + diffuse + specular + 8.0 * U * magnitudes) * MORE
             };
+            for (all, light) in errors.iter_mut().zip(light_errors) {
+                *all = error(light).max(*all);
+            }
             Channel {
                 ambient: a.value(),
                 diffuse: d.value(),
                 specular: s.value(),
-                errors: std::array::from_fn(|zone| error(light.errors[zone], left_out[zone])),
             }
         };
         let [red, green, blue] = shading.coefficients();
+        let channels = [
+            channel(color.x, red),
+            channel(color.y, green),
+            channel(color.z, blue),
+        ];
         Ball {
             center: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
@@ -275,11 +285,8 @@ impl Ball {
             exponent,
             // (1 − x)ⁿ ≤ e^−nx.
             highlight: libm::exp(CUT / n),
-            channels: [
-                channel(color.x, red),
-                channel(color.y, green),
-                channel(color.z, blue),
-            ],
+            channels,
+            errors,
             shadows,
         }
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::ball::{Ball, Form, Halfway, Stretch, ZONES};
+use super::ball::{Ball, Form, Halfway, Stretch};
 use super::paint::{Paint, fill};
 use super::shape::{MORE, Screen, U, places};
 use super::solids::ShadedBall;
@@ -23,10 +23,10 @@ pub(super) enum Caster {
 /// Points in the shadow of a ball.
 pub(super) struct Passing {
     pub(super) before: Form,
-    /// The components of a vector, of which the squared length is at most `reach`; in each zone a bound on the error of the difference.
+    /// The components of a vector, of which the squared length is at most `reach`; a bound on the error of the difference.
     pub(super) moment: [Form; 3],
     pub(super) reach: f64,
-    errors: [f64; ZONES],
+    error: f64,
 }
 
 /// What the shading of a run needs, kept for the next.
@@ -72,12 +72,13 @@ impl Run<'_> {
 }
 
 /// As many pixels as f64 lanes: where they are hit, and bit by bit which are turned away from the light, and of which all this is known.
-struct Hits<V> {
+struct Hits<V, M> {
     q: V,
     s: V,
     /// n·l.
     light: V,
-    zone: usize,
+    /// Which are in the innermost zone.
+    deep: M,
     turned_away: u64,
     known: u64,
 }
@@ -174,15 +175,21 @@ fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S::f64s {
 }
 
 #[inline(always)]
-fn hits<S: Simd>(simd: S, ball: &Ball, light: &Along<S::f64s>, m: f64, x: f64) -> Hits<S::f64s> {
+fn hits<S: Simd>(
+    simd: S,
+    ball: &Ball,
+    light: &Along<S::f64s>,
+    m: f64,
+    x: f64,
+) -> Hits<S::f64s, S::mask64s> {
     let q = places::<S>(simd, 0) + x - ball.center;
     let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
-    let zone = usize::from(squared.simd_lt(ball.least[0]).any_true());
+    let deep = squared.simd_ge(ball.least[0]);
     let known = squared.simd_ge(ball.least[1]);
     let s = squared.sqrt();
     let light = value::<S>(light, q, s);
     let turned_away = if ball.shadows {
-        light.simd_lt(-ball.light.errors[zone]).to_bitmask()
+        light.simd_lt(-ball.light.error).to_bitmask()
     } else {
         0
     };
@@ -190,7 +197,7 @@ fn hits<S: Simd>(simd: S, ball: &Ball, light: &Along<S::f64s>, m: f64, x: f64) -
         q,
         s,
         light,
-        zone,
+        deep,
         turned_away,
         known: known.to_bitmask(),
     }
@@ -204,10 +211,10 @@ fn shadowed<S: Simd>(
     casters: &[Caster],
     shading: &Shading,
     m: f64,
-    hits: &Hits<S::f64s>,
+    hits: &Hits<S::f64s, S::mask64s>,
 ) -> (u64, u64) {
     let mut in_shadow = S::mask64s::from_bitmask(simd, hits.turned_away);
-    let mut settled = in_shadow | hits.light.simd_gt(ball.light.errors[hits.zone]);
+    let mut settled = in_shadow | hits.light.simd_gt(ball.light.error);
     for &caster in &shading.in_reach {
         let (inside, outside) = behind(simd, &casters[caster], m, hits);
         in_shadow |= inside;
@@ -222,7 +229,7 @@ fn lit<S: Simd>(
     simd: S,
     ball: &Ball,
     m: f64,
-    hits: &Hits<S::f64s>,
+    hits: &Hits<S::f64s, S::mask64s>,
 ) -> ([S::f64s; 3], [S::f64s; 3]) {
     let zero = S::f64s::splat(simd, 0.0);
     let light = hits.light.max(zero);
@@ -230,10 +237,10 @@ fn lit<S: Simd>(
     for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
         *sample = light * channel.diffuse + channel.ambient;
     }
-    let mut errors = [zero; 3];
-    for (error, channel) in errors.iter_mut().zip(&ball.channels) {
-        *error = S::f64s::splat(simd, channel.errors[hits.zone]);
-    }
+    let [deep, shallow] = ball.errors;
+    let error = S::f64s::splat(simd, shallow);
+    let error = hits.deep.select(S::f64s::splat(simd, deep), error);
+    let mut errors = [error; 3];
     if let Some(halfway) = &ball.halfway {
         let x = value::<S>(&along(simd, &halfway.form, m), hits.q, hits.s);
         if x.simd_gt(ball.highlight).any_true() {
@@ -260,7 +267,7 @@ fn highlight<S: Simd>(
     ball: &Ball,
     halfway: &Halfway,
     m: f64,
-    hits: &Hits<S::f64s>,
+    hits: &Hits<S::f64s, S::mask64s>,
 ) -> (S::f64s, S::f64s) {
     let [across, off, out] = halfway.at;
     let (across, off, out) = (hits.q - across, m - off, hits.s - out);
@@ -269,7 +276,7 @@ fn highlight<S: Simd>(
     let scale = 0.5 * ball.inverse_radius * ball.inverse_radius;
     let missing = (squared * scale).min(1.0 - ball.highlight);
     let power = power(simd, -missing + 1.0, ball.exponent);
-    let [constant, slope] = halfway.errors[hits.zone];
+    let [constant, slope] = halfway.errors;
     // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for max(X, x) instead of x.
     let steep = power * (2.0 * 1.06) + 1.06 * halfway.least;
     (power, (missing * slope + constant) * steep)
@@ -298,17 +305,17 @@ fn behind<S: Simd>(
     simd: S,
     caster: &Caster,
     m: f64,
-    hits: &Hits<S::f64s>,
+    hits: &Hits<S::f64s, S::mask64s>,
 ) -> (S::mask64s, S::mask64s) {
-    let &Hits { q, s, zone, .. } = hits;
+    let &Hits { q, s, .. } = hits;
     match caster {
         Caster::Cell(forms) => {
             let mut inside = S::mask64s::splat(simd, true);
             let mut outside = S::mask64s::splat(simd, false);
             for form in forms {
                 let depth = value::<S>(&along(simd, form, m), q, s);
-                inside &= depth.simd_gt(form.errors[zone]);
-                outside |= depth.simd_lt(-form.errors[zone]);
+                inside &= depth.simd_gt(form.error);
+                outside |= depth.simd_lt(-form.error);
             }
             (inside, outside)
         }
@@ -317,7 +324,7 @@ fn behind<S: Simd>(
                 before,
                 moment,
                 reach,
-                errors,
+                error,
             } = &**passing;
             let ahead = value::<S>(&along(simd, before, m), q, s);
             let x = value::<S>(&along(simd, &moment[0], m), q, s);
@@ -325,8 +332,8 @@ fn behind<S: Simd>(
             let z = value::<S>(&along(simd, &moment[2], m), q, s);
             let depth = S::f64s::splat(simd, *reach) - (x * x + y * y + z * z);
             (
-                ahead.simd_gt(before.errors[zone]) & depth.simd_gt(errors[zone]),
-                ahead.simd_lt(-before.errors[zone]) | depth.simd_lt(-errors[zone]),
+                ahead.simd_gt(before.error) & depth.simd_gt(*error),
+                ahead.simd_lt(-before.error) | depth.simd_lt(-*error),
             )
         }
     }
@@ -348,8 +355,7 @@ impl Caster {
                 };
                 let [x, y, z] = &passing.moment;
                 let most = passing.reach - (least_square(x) + least_square(y) + least_square(z));
-                let error = passing.errors.iter().copied().fold(0.0, f64::max);
-                most < -error || passing.before.is_negative_along(stretch)
+                most < -passing.error || passing.before.is_negative_along(stretch)
             }
         }
     }
@@ -360,19 +366,17 @@ impl Caster {
             .iter()
             .map(|form| form.magnitude * form.magnitude)
             .sum();
-        let errors = std::array::from_fn(|zone| {
-            // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six operations round, each by less than u of all magnitudes.
-            let carried: f64 = moment
-                .iter()
-                .map(|form| (2.0 * form.magnitude + form.errors[zone]) * form.errors[zone])
-                .sum();
-            (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE
-        });
+        // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six operations round, each by less than u of all magnitudes.
+        let carried: f64 = moment
+            .iter()
+            .map(|form| (2.0 * form.magnitude + form.error) * form.error)
+            .sum();
+        let error = (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE;
         Caster::Ball(Box::new(Passing {
             before,
             moment,
             reach: reach.value(),
-            errors,
+            error,
         }))
     }
 }
