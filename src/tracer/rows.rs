@@ -23,12 +23,20 @@
 //! - Eight rows are crossed at once, and a sweep keeps what it has met instead of asking every border between two crossings: 0.170.
 //!   Most rows show what the row before shows from crossing to crossing, so that is kept: 0.166.
 //! - Of two solids that a plane keeps apart it is known for the whole frame which is in front, so no depth is computed: 0.150.
+//! - A highlight multiplies the error of n·h by its exponent, here 1000, and its bound was that of the brightest pixel: 12 pixels a
+//!   frame were in doubt, and 494 with 200 small spheres. 1 − n·h is known far better, and each pixel has its own bound now: 0.145,
+//!   and 0.8 instead of 1.95 with the small spheres.
+//! - A surface's border that lies exactly on a row was asked for pixel by pixel, because a third of its height rounds. Three times
+//!   the surface has no thirds: at N = 512 and α = 0 it is 0.11 instead of 0.31.
 //! - Dead ends, all within the noise: a fixed-length interleave of the channels, one by shuffles (which the compiler makes by itself),
-//!   and one by overlapping stores; fewer half-planes for shadows on the surface, fewer cuts to sort, one codegen unit. The end of
+//!   and one by overlapping stores; fewer half-planes for shadows on the surface, fewer cuts to sort, one codegen unit; a last vector
+//!   of a sphere's pixels that lies on the one before (and then must not leave in doubt what that knew); one test for a highlight
+//!   in two vectors, and one in a whole run, which nearly every run passes; crossings narrowed to columns by vectors. The end of
 //!   a sphere's light as one more border would cost more crossings (5 ns each) than the pixels behind it take.
 //!
-//! What is left is the structure of rows (0.055), shading (0.05), filling (0.03), and what a frame needs before its first row (0.013),
-//! of which allocating is about 0.002.
+//! What is left is the structure of rows (0.055), shading (0.05), filling (0.03), and what a frame needs before its first row (0.011),
+//! of which 77 allocations of 14 KB together are about 0.002. Of the shading of the spheres in stage 4, a quarter goes to where they are hit
+//! and how they face the light, two fifths to the colour, a third to rounding, its test, and interleaving.
 
 mod ball;
 mod lanes;
