@@ -39,7 +39,7 @@ use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
 use pool::{Pool, lock};
 pub use progress::Progress;
-use rows::{Memory, Precision, Rows, Scratch};
+use rows::{Memory, Precision, ROWS, Rows, Scratch};
 pub use simd::Simd;
 
 /// How numbers are computed.
@@ -151,9 +151,9 @@ fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Ru
     (pixels.explain(column, row, traced), rung)
 }
 
-/// Rows are handed to threads in bands of so many: few enough that the last band of one is not long waited for by the others, and so
-/// many that claiming a band costs nothing beside it.
-const BAND: usize = 8;
+/// Rows are handed to threads in bands of so many: those that are crossed at once, so that no two threads cross the same. They are few
+/// enough that the last band of one is not long waited for by the others, and so many that claiming them costs nothing beside that.
+const BAND: usize = ROWS;
 
 /// Traces pictures: made once, used for any number of frames.
 pub struct Tracer {

@@ -67,6 +67,7 @@ pub(super) use row::Memory;
 use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
 use solids::{Body, Facet, Pair, Solids};
+pub(super) use span::ROWS;
 use sweep::{Border, Borders, Column, Sweep};
 
 /// A frame, ready to be traced row by row.

@@ -1,7 +1,7 @@
 //! Parts of neighbouring rows of pixels, as far as they are known.
 
 /// Rows are crossed so many at a time.
-pub(super) const ROWS: usize = 8;
+pub(in crate::tracer) const ROWS: usize = 8;
 
 /// In each of some rows, a run of columns of which some are certain and, at both ends, some only possible: `possible` holds `certain`.
 /// Every run goes from its first column to before its last; one without columns begins and ends in the same place.
