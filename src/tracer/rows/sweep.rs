@@ -155,8 +155,10 @@ pub(super) struct Sweep {
     pub(super) column: Column,
     /// The first of the rows that are crossed.
     first: Option<u32>,
-    /// The borders that cross them.
-    crossed: Vec<usize>,
+    /// The borders that cross them, and whether it is certain where in all of them.
+    crossed: Vec<(usize, bool)>,
+    /// The same of the rows that were crossed before.
+    crossed_before: Vec<(usize, bool)>,
     /// Four times for each of these: where its columns begin possibly and certainly, and where they end certainly and possibly.
     places: Vec<[u32; ROWS]>,
     /// The crossings of a row, from the left: the column in the upper half, and in the lower which of `places` it is.
@@ -169,6 +171,10 @@ impl Sweep {
     /// Prepares for rows of a frame.
     pub(super) fn begin(&mut self, borders: &Borders) {
         self.first = None;
+        self.crossed.clear();
+        self.crossings.clear();
+        self.gaps.clear();
+        self.gaps.push(false);
         self.column.held.clear();
         self.column.held.resize(borders.of.len(), Held::No);
     }
@@ -183,22 +189,26 @@ impl Sweep {
         screen: Screen,
     ) -> bool {
         let first = row - row % ROWS as u32;
-        let mut is_new = self.first != Some(first);
-        if is_new {
+        let mut is_new = self.first.is_none();
+        if self.first != Some(first) {
             self.first = Some(first);
+            std::mem::swap(&mut self.crossed, &mut self.crossed_before);
             self.crossed.clear();
             self.places.clear();
             dispatch!(level, simd => self.cross(simd, borders, first, screen));
-            self.crossings.clear();
-            for (number, places) in self.places.chunks_exact(4).enumerate() {
-                let is_certain = places[0] == places[1] && places[2] == places[3];
-                let kinds: &[u64] = if is_certain { &[1, 3] } else { &[0, 1, 2, 3] };
-                let number = 4 * number as u64;
-                self.crossings
-                    .extend(kinds.iter().map(|kind| number + kind));
+            // The same borders mostly cross in the same order as in the rows before.
+            if self.crossed != self.crossed_before {
+                is_new = true;
+                self.crossings.clear();
+                for (number, &(_, is_certain)) in self.crossed.iter().enumerate() {
+                    let kinds: &[u64] = if is_certain { &[1, 3] } else { &[0, 1, 2, 3] };
+                    let number = 4 * number as u64;
+                    self.crossings
+                        .extend(kinds.iter().map(|kind| number + kind));
+                }
+                self.gaps.clear();
+                self.gaps.resize(self.crossings.len() + 1, false);
             }
-            self.gaps.clear();
-            self.gaps.resize(self.crossings.len() + 1, false);
         }
         let row = (row - first) as usize;
         for i in 0..self.crossings.len() {
@@ -245,7 +255,7 @@ impl Sweep {
     /// Goes over a crossing.
     pub(super) fn pass(&mut self, crossing: usize, borders: &Borders) {
         let at = self.crossings[crossing] as u32;
-        let border = self.crossed[(at >> 2) as usize];
+        let (border, _) = self.crossed[(at >> 2) as usize];
         let after = KINDS[(at & 3) as usize];
         self.column.change(border, borders.of[border], after);
     }
@@ -258,7 +268,7 @@ impl Sweep {
                 let spans = borders.shapes[border].cross(simd, first, screen);
                 if !spans.is_none() {
                     let ([a, d], [b, c]) = (spans.possible, spans.certain);
-                    self.crossed.push(border);
+                    self.crossed.push((border, a == b && c == d));
                     self.places.extend([a, b, c, d]);
                 }
             }
