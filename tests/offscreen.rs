@@ -11,9 +11,12 @@
     reason = "the test harness hides what `eprintln!` says in a test that passes"
 )]
 
+mod choices;
+
 use std::ffi::c_void;
 use std::io::Write as _;
 
+use choices::choices;
 use firsthit::image::display_byte;
 use firsthit::screen::{Offscreen, Path, ScreenError, Through, TimedScreen};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
@@ -151,13 +154,7 @@ fn the_rows_that_changed_are_all_that_need_be_uploaded() {
         let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
         let mut image = Image::new(size).unwrap();
         offscreen.show(&image).unwrap();
-        let mut random = 1u64;
-        let mut choose = |count: usize| {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (random >> 33) as usize % count
-        };
+        let mut choose = choices();
         let (mut alpha, mut rows_uploaded) = (0.0, 0);
         let (mut tracer, mut scene, mut stage) = (0, 0, Stage::Reflection);
         for step in 0..1000 {

@@ -6,6 +6,9 @@
     reason = "a test stops at the first surprise"
 )]
 
+mod choices;
+
+use choices::choices;
 use firsthit::camera::{ROUND, frame_angle};
 use firsthit::tracer::{Decision, Simd};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
@@ -170,13 +173,7 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
     // Two pictures of two sizes, which the tracers take turns with; now and then somebody else writes into one.
     let mut retained = [61, 96].map(|size| Image::new(size).unwrap());
     let mut whole = retained.clone();
-    let mut random = 1u64;
-    let mut choose = |count: usize| {
-        random = random
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (random >> 33) as usize % count
-    };
+    let mut choose = choices();
     for step in 0..3000 {
         let tracer = &mut tracers[if step % 3 == 0 { choose(4) } else { 0 }];
         let scene = &scenes[if step % 5 == 0 { choose(4) } else { 0 }];
