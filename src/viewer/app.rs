@@ -192,7 +192,8 @@ impl App<'_> {
         }
     }
 
-    /// Brings what is to be shown into the texture, where it is not there already and can be had. Whether it was not.
+    /// Brings what is to be shown into the texture, unless it is there already or cannot be had.
+    /// Returns whether it was brought.
     fn upload(&mut self) -> Result<bool, ViewerError> {
         let (Some(view), Some(shown), false) = (&mut self.view, &self.shown, self.uploaded) else {
             return Ok(false);
