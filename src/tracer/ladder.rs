@@ -194,7 +194,8 @@ impl<'a> Ladder<'a> {
         })
     }
 
-    fn picture<R: Real>(&self) -> Picture<'a, R> {
+    /// The frame in any number.
+    pub(super) fn picture<R: Real>(&self) -> Picture<'a, R> {
         let frame = frame(self.alpha, self.size);
         self.basis
             .picture(self.scene, self.stage, &frame, self.size)

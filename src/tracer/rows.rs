@@ -41,6 +41,8 @@
 //! and how they face the light, two fifths to the colour, a third to rounding, its test, and interleaving.
 
 mod ball;
+#[cfg(test)]
+mod bounds;
 mod lanes;
 mod order;
 mod paint;

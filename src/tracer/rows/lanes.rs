@@ -72,20 +72,20 @@ impl Run<'_> {
 }
 
 /// As many pixels as f64 lanes: where they are hit, and bit by bit which are turned away from the light, and of which all this is known.
-struct Hits<V, M> {
-    q: V,
-    s: V,
+pub(super) struct Hits<V, M> {
+    pub(super) q: V,
+    pub(super) s: V,
     /// n·l.
-    light: V,
+    pub(super) light: V,
     /// Which are in the innermost zone.
     deep: M,
     turned_away: u64,
-    known: u64,
+    pub(super) known: u64,
 }
 
 /// A linear form along a row.
 #[derive(Clone, Copy)]
-struct Along<V> {
+pub(super) struct Along<V> {
     row: V,
     across: V,
     out: V,
@@ -160,7 +160,7 @@ pub(super) fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: 
 }
 
 #[inline(always)]
-fn along<S: Simd>(simd: S, form: &Form, m: f64) -> Along<S::f64s> {
+pub(super) fn along<S: Simd>(simd: S, form: &Form, m: f64) -> Along<S::f64s> {
     Along {
         row: S::f64s::splat(simd, form.of_row(m)),
         across: S::f64s::splat(simd, form.across),
@@ -170,12 +170,12 @@ fn along<S: Simd>(simd: S, form: &Form, m: f64) -> Along<S::f64s> {
 
 /// The value of a form at some pixels.
 #[inline(always)]
-fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S::f64s {
+pub(super) fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S::f64s {
     form.row + q * form.across + s * form.out
 }
 
 #[inline(always)]
-fn hits<S: Simd>(
+pub(super) fn hits<S: Simd>(
     simd: S,
     ball: &Ball,
     light: &Along<S::f64s>,
@@ -225,7 +225,7 @@ fn shadowed<S: Simd>(
 
 /// Bounds on the samples of pixels in the light.
 #[inline(always)]
-fn lit<S: Simd>(
+pub(super) fn lit<S: Simd>(
     simd: S,
     ball: &Ball,
     m: f64,

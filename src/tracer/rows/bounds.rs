@@ -1,0 +1,214 @@
+//! The bounds on what the pixels of spheres are shaded with, held against double-doubles: no error is larger than its bound, and no bound
+//! is out of all proportion to the errors.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::ball::{Ball, Form};
+use super::lanes::{along, hits, lit, value};
+use super::shape::{Ellipse, Screen};
+use crate::number::{Bounded, DoubleDouble, Real};
+use crate::scene::Scene;
+use crate::stage::Stage;
+use crate::tracer::ladder::{Ladder, Lines, Rung};
+use crate::tracer::pixel::Picture;
+use crate::tracer::sphere::Sphere;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::View;
+
+const SIZE: u32 = 400;
+
+/// The largest error found of some kind, as a part of its bound.
+#[derive(Default)]
+struct Largest {
+    part: f64,
+    count: usize,
+}
+
+impl Largest {
+    /// What f64 `computed` with this bound.
+    fn note(&mut self, truth: DoubleDouble, computed: f64, bound: f64) {
+        let error = apart(truth, computed).abs();
+        assert!(error <= bound, "{error:e} is more than {bound:e}");
+        self.count += 1;
+        if bound > 0.0 && bound.is_finite() {
+            self.part = self.part.max(error / bound);
+        }
+    }
+
+    /// What f64 knows to lie between two numbers.
+    fn note_between(&mut self, truth: DoubleDouble, lower: f64, upper: f64) {
+        assert!(
+            apart(truth, lower) >= 0.0 && apart(truth, upper) <= 0.0,
+            "{:e} is not within {lower:e} to {upper:e}",
+            truth.to_f64()
+        );
+        self.count += 1;
+        let half = (upper - lower) / 2.0;
+        if half > 0.0 && half.is_finite() {
+            self.part = self.part.max(apart(truth, lower + half).abs() / half);
+        }
+    }
+
+    /// A bound adds up what rarely meets, and is that of the worst pixel in a zone.
+    fn expect(&self, what: &str) {
+        assert!(self.count > 1000, "{what}: only {} tried", self.count);
+        assert!(
+            self.part > 1e-3,
+            "{what}: no error is more than {:e} of its bound",
+            self.part
+        );
+    }
+}
+
+fn apart(truth: DoubleDouble, computed: f64) -> f64 {
+    (truth - DoubleDouble::exact(computed)).to_f64()
+}
+
+#[derive(Default)]
+struct Found {
+    light: Largest,
+    /// Channels without a highlight to speak of, and with one.
+    dull: Largest,
+    highlight: Largest,
+    /// The forms that tell shadows.
+    forms: Largest,
+}
+
+/// A sphere as rows shade it, and what its pixels are in truth.
+struct Case<'c> {
+    picture: &'c Picture<'c, DoubleDouble>,
+    view: &'c View<DoubleDouble>,
+    sphere: &'c Sphere<DoubleDouble>,
+    color: Vector<DoubleDouble>,
+    ball: Ball,
+    screen: Screen,
+    /// Another sphere's centre, and the forms that tell whether that is between a pixel and the light.
+    other: Vector<DoubleDouble>,
+    forms: [Form; 4],
+}
+
+impl Case<'_> {
+    #[inline(always)]
+    fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
+        let ball = &self.ball;
+        let m = ball.off.at(self.screen.place(row));
+        let light = along(simd, &ball.light, m);
+        for first in (0..SIZE).step_by(S::f64s::LEN) {
+            let hits = hits(simd, ball, &light, m, self.screen.place(first));
+            let (lower, upper) = lit(simd, ball, m, &hits);
+            let forms = self
+                .forms
+                .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
+            for lane in (0..S::f64s::LEN).filter(|lane| hits.known >> lane & 1 == 1) {
+                let line = self.picture.eye_ray(first + lane as u32, row);
+                let hit = self.sphere.first_hit(&line).unwrap().unwrap();
+                let shading = &self.view.shading;
+                let terms = shading.terms(&hit.normal).unwrap();
+                let computed = hits.light.as_slice()[lane];
+                found
+                    .light
+                    .note(terms.normal_light, computed, ball.light.error);
+
+                let (from, l) = (hit.point - self.other, shading.to_light.vector);
+                let moment = from.cross(l);
+                let truth = [moment.x, moment.y, moment.z, -from.dot(l)];
+                for (i, truth) in truth.into_iter().enumerate() {
+                    let computed = forms[i].as_slice()[lane];
+                    found.forms.note(truth, computed, self.forms[i].error);
+                }
+
+                let light = shading.ambient() + terms.diffuse + terms.specular;
+                let (color, specular) = (self.color.times(light), self.color.times(terms.specular));
+                let truth = [color.x, color.y, color.z];
+                let bright = [specular.x, specular.y, specular.z].map(Real::to_f64);
+                for (i, truth) in truth.into_iter().enumerate() {
+                    let channels = if bright[i] > 1e-3 {
+                        &mut found.highlight
+                    } else {
+                        &mut found.dull
+                    };
+                    channels.note_between(
+                        truth,
+                        lower[i].as_slice()[lane],
+                        upper[i].as_slice()[lane],
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A picture, its view or that in the mirror, and what colours are multiplied with in that.
+type Seen<'s, R> = (&'s Picture<'s, R>, &'s View<R>, R);
+
+/// The spheres of a view, as f64 with bounds knows it, and in truth.
+fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &mut Found) {
+    let screen = Screen::new(SIZE);
+    let (view, true_view) = (known.1, truth.1);
+    for (index, sphere) in view.spheres.iter().enumerate() {
+        let outline = Ellipse::outline(sphere.center, sphere.radius, screen);
+        let color = known.0.solid_color(index) * known.2;
+        let ball = Ball::new(sphere, &outline, &view.shading, color, false);
+        let other = (index + 1) % view.spheres.len();
+        let ([x, y, z], before) = ball.around(view.spheres[other].center, &view.shading.to_light);
+        let case = Case {
+            picture: truth.0,
+            view: true_view,
+            sphere: &true_view.spheres[index],
+            color: truth.0.solid_color(index) * truth.2,
+            ball,
+            screen,
+            other: true_view.spheres[other].center,
+            forms: [x, y, z, before],
+        };
+        for row in (0..SIZE).step_by(3) {
+            dispatch!(Level::new(), simd => case.check(simd, row, found));
+        }
+    }
+}
+
+fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
+    let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Double);
+    let (known, truth) = (ladder.bounded(), &ladder.picture::<DoubleDouble>());
+    let one = (Bounded::exact(1.0), DoubleDouble::exact(1.0));
+    check_view(
+        (known, &known.view, one.0),
+        (truth, &truth.view, one.1),
+        found,
+    );
+    let floors = known.floor.as_ref().zip(truth.floor.as_ref());
+    if let Some((Some(a), Some(b))) = floors.map(|(a, b)| (&a.mirror, &b.mirror)) {
+        check_view(
+            (known, &a.view, a.reflectance),
+            (truth, &b.view, b.reflectance),
+            found,
+        );
+    }
+}
+
+#[test]
+fn every_error_is_within_its_bound() {
+    let mut found = Found::default();
+    for text in [
+        "",
+        include_str!("../../../tests/scenes/highlights.toml"),
+        include_str!("../../../tests/scenes/exponent_million.toml"),
+        include_str!("../../../tests/scenes/far_spheres.toml"),
+        include_str!("../../../tests/scenes/wide_light.toml"),
+    ] {
+        let scene = match text {
+            "" => Scene::builtin(),
+            text => Scene::from_toml(text).unwrap(),
+        };
+        for alpha in [0.0, 0.7, 2.5, -1e9] {
+            check_frame(&scene, alpha, &mut found);
+        }
+    }
+    found.light.expect("n·l");
+    found.forms.expect("other linear forms");
+    found.dull.expect("channels");
+    found.highlight.expect("channels with a highlight");
+}
