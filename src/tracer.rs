@@ -4,6 +4,7 @@
 //! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number. Most pixels are not asked one by
 //! one: where borders cross a row is computed from the same formulas, and what lies between them is filled or shaded at once.
 
+mod arena;
 mod decision;
 mod explain;
 mod extent;
@@ -34,6 +35,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, PoisonError};
 
 use crate::{Image, Scene, Stage};
+use arena::Arena;
 pub use decision::{Decision, Seen};
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
@@ -164,6 +166,7 @@ pub struct Tracer {
     simd: Simd,
     progress: Progress,
     in_doubt: InDoubt,
+    arena: Arena,
     /// What is known of the rows of the frame that was traced last to be traced over.
     memory: Vec<Memory>,
     /// The number of that frame; 0 before there is one.
@@ -187,6 +190,7 @@ impl Tracer {
             frame: 0,
             progress: Progress::default(),
             in_doubt: InDoubt::default(),
+            arena: Arena::default(),
         })
     }
 
@@ -312,23 +316,23 @@ impl Tracer {
         if column >= size || row >= size {
             return Err(TraceError::Pixel { column, row, size });
         }
-        let at = (column, row);
+        let (at, arena) = ((column, row), &Arena::default());
         let (text, rung) = match self.kernel {
             Kernel::Exact => {
-                let ladder = Ladder::new(scene, stage, alpha, size, Rung::Double);
-                self.explain_from_row(&ladder, Precision::Bounded, at)
+                let ladder = Ladder::new(scene, stage, alpha, size, Rung::Double, arena);
+                self.explain_from_row(&ladder, Precision::Bounded, at, arena)
             }
             Kernel::Fast => {
-                let plain = Plain::<f32>::new(scene, stage, alpha, size);
-                self.explain_from_row(&plain, Precision::Single, at)
+                let plain = Plain::<f32>::new(scene, stage, alpha, size, arena);
+                self.explain_from_row(&plain, Precision::Single, at, arena)
             }
             Kernel::Double => {
-                let plain = Plain::<f64>::new(scene, stage, alpha, size);
-                self.explain_from_row(&plain, Precision::Double, at)
+                let plain = Plain::<f64>::new(scene, stage, alpha, size, arena);
+                self.explain_from_row(&plain, Precision::Double, at, arena)
             }
             Kernel::Listing => explain_pixel(&Listing::new(scene, stage, alpha, size)?, at),
             Kernel::Reference => {
-                let ladder = Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble);
+                let ladder = Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble, arena);
                 explain_pixel(&ladder, at)
             }
         };
@@ -352,11 +356,12 @@ impl Tracer {
         pixels: &impl Lines,
         precision: Precision,
         (column, row): (u32, u32),
+        arena: &Arena,
     ) -> (String, Rung) {
         let size = pixels.bounded().size as usize;
         let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
         let (rows, mut scratch) = (
-            Rows::new(pixels, precision, self.simd.0),
+            Rows::new(pixels, precision, self.simd.0, arena),
             Scratch::default(),
         );
         rows.begin(&mut scratch);
@@ -386,6 +391,8 @@ impl Tracer {
             _ => None,
         };
         self.progress.set(0);
+        let mut arena = std::mem::take(&mut self.arena);
+        arena.clear();
         let mut memory = std::mem::take(&mut self.memory);
         let (remembered, samples) = match extent {
             Extent::Whole => (None, image.samples_mut()),
@@ -409,22 +416,23 @@ impl Tracer {
         self.in_doubt = match (self.kernel, &listing) {
             (_, Some(listing)) => self.trace_pixels(listing, target),
             (Kernel::Fast, _) => {
-                let plain = Plain::<f32>::new(scene, stage, alpha, n);
-                self.trace_rows(&plain, Precision::Single, target)
+                let plain = Plain::<f32>::new(scene, stage, alpha, n, &arena);
+                self.trace_rows(&plain, Precision::Single, target, &arena)
             }
             (Kernel::Double, _) => {
-                let plain = Plain::<f64>::new(scene, stage, alpha, n);
-                self.trace_rows(&plain, Precision::Double, target)
+                let plain = Plain::<f64>::new(scene, stage, alpha, n, &arena);
+                self.trace_rows(&plain, Precision::Double, target, &arena)
             }
             (Kernel::Reference, _) => {
-                let ladder = Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble);
+                let ladder = Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble, &arena);
                 self.trace_pixels(&ladder, target)
             }
             _ => {
-                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double);
-                self.trace_rows(&ladder, Precision::Bounded, target)
+                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double, &arena);
+                self.trace_rows(&ladder, Precision::Bounded, target, &arena)
             }
         };
+        self.arena = arena;
         self.memory = memory;
         Ok(())
     }
@@ -434,8 +442,9 @@ impl Tracer {
         pixels: &impl Lines,
         precision: Precision,
         target: Target<'_>,
+        arena: &Arena,
     ) -> InDoubt {
-        let rows = Rows::new(pixels, precision, self.simd.0);
+        let rows = Rows::new(pixels, precision, self.simd.0, arena);
         let size = target.size;
         for local in &mut self.local {
             rows.begin(&mut inner(local).scratch);

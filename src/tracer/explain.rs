@@ -230,7 +230,7 @@ impl<R: Real> Picture<'_, R> {
     fn explain_solid(
         &self,
         text: &mut String,
-        view: &View<R>,
+        view: &View<'_, R>,
         (pixel, ray): ((u32, u32), &Line<R>),
         reach: Reach,
         seen: Seen,
@@ -327,7 +327,7 @@ impl<R: Real> Picture<'_, R> {
     fn explain_solid_shadow(
         &self,
         text: &mut String,
-        view: &View<R>,
+        view: &View<'_, R>,
         hit: &Hit<R>,
     ) -> Result<(), R::Doubt> {
         if view.shading.facing_light(&hit.normal)?.is_le() {

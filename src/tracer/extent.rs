@@ -2,6 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use bumpalo::Bump;
+
+use super::arena::collect;
 use super::vector::Vector;
 use super::view::{Frame, reflect};
 use crate::number::{Bounded, Real};
@@ -15,9 +18,9 @@ pub(super) struct Extent {
 }
 
 /// The extents of a frame: of every solid, of every solid in the mirror, and of the surface.
-pub(super) struct Extents {
-    pub(super) direct: Vec<Extent>,
-    pub(super) mirrored: Vec<Extent>,
+pub(super) struct Extents<'f> {
+    pub(super) direct: &'f [Extent],
+    pub(super) mirrored: &'f [Extent],
     pub(super) surface: Option<Extent>,
 }
 
@@ -67,8 +70,8 @@ impl Extent {
     }
 }
 
-impl Extents {
-    pub(super) fn new(scene: &Scene, frame: &Frame<Bounded>, size: u32) -> Extents {
+impl<'f> Extents<'f> {
+    pub(super) fn new(scene: &Scene, frame: &Frame<Bounded>, size: u32, arena: &'f Bump) -> Self {
         let solids = |mirror: Option<Bounded>| {
             let place = |point| reflect(frame.place(point), mirror);
             // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
@@ -82,7 +85,7 @@ impl Extents {
                 .tetrahedra()
                 .iter()
                 .map(|t| Extent::of(&t.vertices.map(place), none, none, size));
-            spheres.chain(tetrahedra).collect()
+            collect(arena, spheres.chain(tetrahedra))
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
@@ -98,7 +101,7 @@ impl Extents {
         let mirrored = if mirror.is_some() {
             solids(mirror)
         } else {
-            Vec::new()
+            &[]
         };
         Extents {
             direct: solids(None),

@@ -4,6 +4,10 @@ use std::cell::LazyCell;
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
+use bumpalo::Bump;
+use bumpalo_herd::Herd;
+
+use super::arena::{Arena, Room};
 use super::decision::Decision;
 use super::extent::Extents;
 use super::line::Normal;
@@ -45,23 +49,23 @@ pub(super) trait Lines: Pixels {
 }
 
 /// What all arithmetics of a frame build on.
-struct Basis {
+struct Basis<'f> {
     frame: Frame<Bounded>,
-    bearings: FrameBearings,
-    extents: Extents,
+    bearings: FrameBearings<'f>,
+    extents: Extents<'f>,
 }
 
-impl Basis {
-    fn new(scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Basis {
+impl<'f> Basis<'f> {
+    fn new(scene: &Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
         let bounded = frame::<Bounded>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
         let bearings = |mirrored| {
             bounded
-                .bearings(scene, mirrored)
-                .or_else(|Doubt| double_double.bearings(scene, mirrored))
+                .bearings(scene, mirrored, arena)
+                .or_else(|Doubt| double_double.bearings(scene, mirrored, arena))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        frame::<Expression>(alpha, size).bearings(scene, mirrored)
+                        frame::<Expression>(alpha, size).bearings(scene, mirrored, arena)
                     })
                 })
                 .map(|bearings| {
@@ -81,7 +85,7 @@ impl Basis {
         Basis {
             frame: bounded,
             bearings,
-            extents: Extents::new(scene, &bounded, size),
+            extents: Extents::new(scene, &bounded, size, arena),
         }
     }
 
@@ -91,23 +95,35 @@ impl Basis {
         stage: Stage,
         frame: &Frame<R>,
         size: u32,
-    ) -> Picture<'a, R> {
-        Picture::new(scene, stage, frame, size, &self.bearings, &self.extents)
+        room: &impl Room<'a>,
+    ) -> Picture<'a, R>
+    where
+        'f: 'a,
+    {
+        let (bearings, extents) = (&self.bearings, &self.extents);
+        Picture::new(scene, stage, frame, size, bearings, extents, room)
     }
 }
 
 /// A kernel of one number that always answers.
-pub(super) struct Plain<'a, R> {
-    bounded: Picture<'a, Bounded>,
-    picture: Picture<'a, R>,
+pub(super) struct Plain<'f, R> {
+    bounded: Picture<'f, Bounded>,
+    picture: Picture<'f, R>,
 }
 
-impl<'a, R: Real<Doubt = Infallible>> Plain<'a, R> {
-    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32) -> Self {
-        let basis = Basis::new(scene, stage, alpha, size);
+impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
+    pub(super) fn new(
+        scene: &'f Scene,
+        stage: Stage,
+        alpha: f64,
+        size: u32,
+        arena: &'f Arena,
+    ) -> Self {
+        let arena = &arena.frame;
+        let basis = Basis::new(scene, stage, alpha, size, arena);
         Plain {
-            bounded: basis.picture(scene, stage, &basis.frame, size),
-            picture: basis.picture(scene, stage, &frame(alpha, size), size),
+            bounded: basis.picture(scene, stage, &basis.frame, size, &arena),
+            picture: basis.picture(scene, stage, &frame(alpha, size), size, &arena),
         }
     }
 
@@ -140,33 +156,43 @@ impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
 }
 
 /// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many digits as it takes.
-pub(super) struct Ladder<'a> {
-    scene: &'a Scene,
+pub(super) struct Ladder<'f> {
+    scene: &'f Scene,
     stage: Stage,
     alpha: f64,
     size: u32,
-    basis: Basis,
+    basis: Basis<'f>,
     lowest: Rung,
-    bounded: Picture<'a, Bounded>,
-    /// Made when it is first needed.
-    double_double: OnceLock<Picture<'a, DoubleDouble>>,
-    colors: Palette,
+    bounded: Picture<'f, Bounded>,
+    /// Made when it is first needed, in `late`.
+    double_double: OnceLock<Picture<'f, DoubleDouble>>,
+    late: &'f Herd,
+    colors: Palette<'f>,
 }
 
-impl<'a> Ladder<'a> {
+impl<'f> Ladder<'f> {
     /// A ladder that begins at the rung `lowest`.
-    pub(super) fn new(scene: &'a Scene, stage: Stage, alpha: f64, size: u32, lowest: Rung) -> Self {
-        let basis = Basis::new(scene, stage, alpha, size);
+    pub(super) fn new(
+        scene: &'f Scene,
+        stage: Stage,
+        alpha: f64,
+        size: u32,
+        lowest: Rung,
+        arena: &'f Arena,
+    ) -> Self {
+        let Arena { frame: arena, late } = arena;
+        let basis = Basis::new(scene, stage, alpha, size, arena);
         Ladder {
             scene,
             stage,
             alpha,
             size,
             lowest,
-            bounded: basis.picture(scene, stage, &basis.frame, size),
+            bounded: basis.picture(scene, stage, &basis.frame, size, &arena),
             basis,
             double_double: OnceLock::new(),
-            colors: Palette::new(scene),
+            late,
+            colors: Palette::new(scene, arena),
         }
     }
 }
@@ -176,7 +202,7 @@ fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
     Frame::new(sin, cos, size)
 }
 
-impl<'a> Ladder<'a> {
+impl<'f> Ladder<'f> {
     /// The answer of the cheapest arithmetic that has one, and which that was.
     fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
         if self.lowest == Rung::Double
@@ -184,21 +210,27 @@ impl<'a> Ladder<'a> {
         {
             return (answer, Rung::Double);
         }
-        let double_double = self.double_double.get_or_init(|| self.picture());
+        let double_double = self
+            .double_double
+            .get_or_init(|| self.picture(&self.late.get()));
         if let Ok(answer) = question.put_to(double_double) {
             return (answer, Rung::DoubleDouble);
         }
         Expression::session(|| {
-            let Ok(answer) = question.put_to(&self.picture::<Expression>());
+            let arena = Bump::new();
+            let Ok(answer) = question.put_to(&self.picture::<Expression>(&&arena));
             (answer, Rung::Arbitrary)
         })
     }
 
     /// The frame in any number.
-    pub(super) fn picture<R: Real>(&self) -> Picture<'a, R> {
+    pub(super) fn picture<'a, R: Real>(&self, room: &impl Room<'a>) -> Picture<'a, R>
+    where
+        'f: 'a,
+    {
         let frame = frame(self.alpha, self.size);
         self.basis
-            .picture(self.scene, self.stage, &frame, self.size)
+            .picture(self.scene, self.stage, &frame, self.size, room)
     }
 }
 

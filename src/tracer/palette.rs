@@ -2,12 +2,14 @@
 
 use std::sync::OnceLock;
 
+use bumpalo::Bump;
+
 use super::decision::{Decision, Seen};
 use crate::scene::Scene;
 
 /// A place for the samples of every decision that tells them: of all but a sphere in the light.
-pub(super) struct Palette {
-    places: Vec<OnceLock<[f32; 3]>>,
+pub(super) struct Palette<'f> {
+    places: &'f [OnceLock<[f32; 3]>],
     solids: usize,
 }
 
@@ -17,13 +19,15 @@ const WITHOUT_SOLIDS: usize = 7;
 /// Four faces in the light, a sphere without light and shadow, and either in shadow.
 const OF_A_SOLID: usize = 6;
 
-impl Palette {
+impl<'f> Palette<'f> {
     /// An empty one.
-    pub(super) fn new(scene: &Scene) -> Palette {
+    pub(super) fn new(scene: &Scene, arena: &'f Bump) -> Self {
         let solids = scene.spheres().len() + scene.tetrahedra().len();
-        let mut places = Vec::new();
-        places.resize_with(WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID, OnceLock::new);
-        Palette { places, solids }
+        let count = WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID;
+        Palette {
+            places: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),
+            solids,
+        }
     }
 
     /// The place of a decision.

@@ -5,6 +5,7 @@ use std::iter;
 
 use glam::DVec3;
 
+use super::arena::Room;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
 use super::line::{Hit, Line, Normal};
@@ -16,29 +17,29 @@ use crate::scene::Scene;
 use crate::stage::Stage;
 
 /// Everything about a frame that its pixels share.
-pub(super) struct Picture<'a, R> {
-    pub(super) scene: &'a Scene,
+pub(super) struct Picture<'f, R> {
+    pub(super) scene: &'f Scene,
     pub(super) stage: Stage,
     pub(super) size: u32,
     pub(super) frame: Frame<R>,
-    pub(super) view: View<R>,
-    pub(super) floor: Option<Floor<R>>,
+    pub(super) view: View<'f, R>,
+    pub(super) floor: Option<Floor<'f, R>>,
 }
 
 /// The surface, from stage 5 on.
-pub(super) struct Floor<R> {
+pub(super) struct Floor<'f, R> {
     pub(super) surface: Surface<R>,
     /// Where it can be seen.
     pub(super) extent: Extent,
     color: Vector<R>,
     /// (N/2) · height.
     pub(super) height_in_pixels: R,
-    pub(super) mirror: Option<Mirror<R>>,
+    pub(super) mirror: Option<Mirror<'f, R>>,
 }
 
 /// What the surface mirrors, from stage 6 on.
-pub(super) struct Mirror<R> {
-    pub(super) view: View<R>,
+pub(super) struct Mirror<'f, R> {
+    pub(super) view: View<'f, R>,
     pub(super) reflectance: R,
 }
 
@@ -53,15 +54,16 @@ pub(super) type Pixel = (Decision, [f32; 3]);
 /// What was decided, and the normal of a sphere in the light.
 type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
 
-impl<'a, R: Real> Picture<'a, R> {
+impl<'f, R: Real> Picture<'f, R> {
     /// `bearings` and `extents` are those of the same frame.
     pub(super) fn new(
-        scene: &'a Scene,
+        scene: &'f Scene,
         stage: Stage,
         frame: &Frame<R>,
         size: u32,
-        bearings: &FrameBearings,
-        extents: &Extents,
+        bearings: &FrameBearings<'_>,
+        extents: &Extents<'f>,
+        room: &impl Room<'f>,
     ) -> Self {
         let floor = match (scene.surface(), frame.surface(scene), &extents.surface) {
             (Some(described), Some(surface), Some(extent)) if stage >= Stage::Shadow => {
@@ -71,7 +73,7 @@ impl<'a, R: Real> Picture<'a, R> {
                     color: Vector::exact(described.color),
                     height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
                     mirror: bearings.mirrored.as_ref().map(|bearings| Mirror {
-                        view: View::new(scene, frame, bearings, &extents.mirrored, true),
+                        view: View::new(scene, frame, bearings, extents.mirrored, true, room),
                         reflectance: R::exact(described.reflectance),
                     }),
                 })
@@ -83,7 +85,7 @@ impl<'a, R: Real> Picture<'a, R> {
             stage,
             size,
             frame: *frame,
-            view: View::new(scene, frame, &bearings.direct, &extents.direct, false),
+            view: View::new(scene, frame, &bearings.direct, extents.direct, false, room),
             floor,
         }
     }
@@ -130,7 +132,7 @@ impl<'a, R: Real> Picture<'a, R> {
 
     fn color_of_solid(
         &self,
-        view: &View<R>,
+        view: &View<'_, R>,
         seen: Seen,
         normal: Option<&Normal<R>>,
     ) -> Result<Vector<R>, R::Doubt> {
@@ -214,7 +216,7 @@ impl<'a, R: Real> Picture<'a, R> {
     /// Where an eye ray meets the surface's plane: its parameter, and the point, whose height is known without any rounding.
     pub(super) fn surface_point(
         &self,
-        floor: &Floor<R>,
+        floor: &Floor<'_, R>,
         ray: &Line<R>,
         row: u32,
     ) -> (R, Vector<R>) {
@@ -229,7 +231,7 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// The surface where it is seen: in shadow, mirroring, or plain.
-    fn surface_at(&self, floor: &Floor<R>, pixel: (u32, u32), point: Vector<R>) -> Decided<R> {
+    fn surface_at(&self, floor: &Floor<'_, R>, pixel: (u32, u32), point: Vector<R>) -> Decided<R> {
         let leaves = floor.surface.support;
         if self
             .view
@@ -258,7 +260,7 @@ impl<'a, R: Real> Picture<'a, R> {
     }
 
     /// Whether a point of a solid is in shadow.
-    fn in_shadow(&self, view: &View<R>, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
+    fn in_shadow(&self, view: &View<'_, R>, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
         let turned_away = || view.shading.facing_light(&hit.normal).map(Ordering::is_le);
         let by_solid = || view.is_shadowed_by(&self.scene.facts().casters[solid], &ray);

@@ -30,14 +30,16 @@
 //!   the surface has no thirds: at N = 512 and α = 0 it is 0.11 instead of 0.31.
 //! - From one band of rows to the next mostly the same borders cross in the same order, so that and what is seen between them is kept
 //!   too; expected was 0.003, it came to 0.006: 0.136.
+//! - A frame's borders, solids and paints lay in 77 allocations, thought to cost 0.002 of 0.136. In one piece of memory that the next frame
+//!   uses again (`arena.rs`) they are 0.131.
 //! - Dead ends, all within the noise: a fixed-length interleave of the channels, one by shuffles (which the compiler makes by itself),
 //!   and one by overlapping stores; fewer half-planes for shadows on the surface, fewer cuts to sort, one codegen unit; a last vector
 //!   of a sphere's pixels that lies on the one before (and then must not leave in doubt what that knew); one test for a highlight
 //!   in two vectors, and one in a whole run, which nearly every run passes; crossings narrowed to columns by vectors. The end of
 //!   a sphere's light as one more border would cost more crossings (5 ns each) than the pixels behind it take.
 //!
-//! What is left is the structure of rows (0.05), shading (0.05), filling (0.03), and what a frame needs before its first row (0.011),
-//! of which 77 allocations of 14 KB together are about 0.002. Of the shading of the spheres in stage 4, a quarter goes to where they are hit
+//! What is left is the structure of rows (0.05), shading (0.05), filling (0.03), and what a frame needs before its first row (0.007).
+//! Of the shading of the spheres in stage 4, a quarter goes to where they are hit
 //! and how they face the light, two fifths to the colour, a third to rounding, its test, and interleaving.
 
 mod ball;
@@ -54,9 +56,11 @@ mod solids;
 mod span;
 mod sweep;
 
+use bumpalo::Bump;
 use fearless_simd::Level;
 
 use super::InDoubt;
+use super::arena::Arena;
 use super::decision::Decision;
 use super::ladder::Lines;
 use super::pixel::{self, Picture, quadrant};
@@ -72,18 +76,18 @@ use row::{Columns, Row};
 use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
 use solids::{Body, Facet, Pair, Solids};
 pub(super) use span::ROWS;
-use sweep::{Border, Borders, Column, Sweep};
+use sweep::{AllBorders, Border, Borders, Column, Sweep};
 
 /// A frame, ready to be traced row by row.
-pub(super) struct Rows<'a, P> {
+pub(super) struct Rows<'f, P> {
     /// Asked for what is in doubt.
-    pixels: &'a P,
+    pixels: &'f P,
     screen: Screen,
     level: Level,
-    borders: Borders,
-    direct: Solids,
-    floor: Option<Floor>,
-    paints: AllPaints,
+    borders: AllBorders<'f>,
+    direct: Solids<'f>,
+    floor: Option<Floor<'f>>,
+    paints: AllPaints<'f>,
     background: PaintNumber,
     /// The picture of code 2-1, where that is the stage.
     quadrants: Option<[PaintNumber; 4]>,
@@ -102,15 +106,16 @@ pub(super) enum Precision {
 }
 
 /// What a frame's rows are made of, as they are prepared.
-struct Parts<'c> {
+struct Parts<'f, 'c> {
     screen: Screen,
-    borders: Borders,
-    paints: Paints<'c>,
+    arena: &'f Bump,
+    borders: Borders<'f>,
+    paints: Paints<'f, 'c>,
 }
 
 /// The surface.
-struct Floor {
-    mirrored: Option<Solids>,
+struct Floor<'f> {
+    mirrored: Option<Solids<'f>>,
     /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its error.
     depth: [f64; 3],
     paint: PaintNumber,
@@ -135,16 +140,18 @@ enum Front {
     Unknown,
 }
 
-impl<'a, P: Lines> Rows<'a, P> {
+impl<'f, P: Lines> Rows<'f, P> {
     /// The frame that `pixels` are of.
-    pub(super) fn new(pixels: &'a P, precision: Precision, level: Level) -> Self {
+    pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
+        let arena = &arena.frame;
         let picture = pixels.bounded();
         let screen = Screen::new(picture.size);
         let color = |decision| pixels.color(decision);
         let mut parts = Parts {
             screen,
-            borders: Borders::default(),
-            paints: Paints::new(&color),
+            arena,
+            borders: Borders::new(arena),
+            paints: Paints::new(&color, arena),
         };
         let is_quadrants = picture.stage == Stage::Image;
         let background = parts.paints.of(Decision::Background);
@@ -157,7 +164,7 @@ impl<'a, P: Lines> Rows<'a, P> {
             pixels,
             screen,
             level,
-            borders: parts.borders,
+            borders: parts.borders.all(),
             paints: parts.paints.all(),
             direct,
             floor,
@@ -273,7 +280,7 @@ impl<'a, P: Lines> Rows<'a, P> {
     }
 
     /// The same where the surface is met, and no solid in front of it.
-    fn seen_of_surface(&self, floor: &Floor, column: &Column, plan: &mut Plan) -> Seen {
+    fn seen_of_surface(&self, floor: &Floor<'_>, column: &Column, plan: &mut Plan) -> Seen {
         let itself = Seen::Only(Show::Paint(floor.paint));
         let mirrored = match (column.surface_in_shadow(), &floor.mirrored) {
             (Some(true), _) => return Seen::Only(Show::Paint(floor.in_shadow)),
@@ -372,7 +379,7 @@ impl<'a, P: Lines> Rows<'a, P> {
     }
 
     /// The solids, or those in the mirror. Without a mirror nothing asks for these.
-    fn solids(&self, mirrored: bool) -> &Solids {
+    fn solids(&self, mirrored: bool) -> &Solids<'f> {
         let in_mirror = self
             .floor
             .as_ref()
@@ -397,7 +404,7 @@ impl<'a, P: Lines> Rows<'a, P> {
 }
 
 /// What a column shows where it sees a solid.
-fn solid_in(view: &Solids, solid: usize, column: &Column) -> Show {
+fn solid_in(view: &Solids<'_>, solid: usize, column: &Column) -> Show {
     match &view.solids[solid].body {
         Body::Flat(paint) => Show::Paint(*paint),
         Body::Ball(_) => Show::Ball {
@@ -443,12 +450,12 @@ fn last_entered(pairs: &[Pair], column: &Column) -> Option<usize> {
     Some(last)
 }
 
-impl Floor {
+impl<'f> Floor<'f> {
     fn new(
         picture: &Picture<'_, Bounded>,
-        floor: &pixel::Floor<Bounded>,
-        parts: &mut Parts<'_>,
-    ) -> Floor {
+        floor: &pixel::Floor<'_, Bounded>,
+        parts: &mut Parts<'f, '_>,
+    ) -> Self {
         let screen = parts.screen;
         let zero = Bounded::exact(0.0);
         let [one, three, ten] = [1.0, 3.0, 10.0].map(Bounded::exact);
@@ -485,13 +492,13 @@ impl Floor {
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let rows = floor.extent.rows(screen.size);
-        let outline = Shape::new(sides.into(), None, screen);
+        let outline = Shape::new(parts.arena.alloc(sides), None, screen);
         parts.borders.add(outline.within(rows), Border::Surface);
         let casters = 0..solids as u16;
-        for shadow in solids::shadows_on(&sheet, &picture.view, casters, is_ahead, screen) {
-            parts
-                .borders
-                .add(shadow.within(rows), Border::ShadowOnSurface);
+        let view = &picture.view;
+        for shadow in solids::shadows_on(&sheet, view, casters, is_ahead, screen, parts.arena) {
+            let shadow = shadow.within(rows);
+            parts.borders.add(shadow, Border::ShadowOnSurface);
         }
         Floor {
             mirrored: floor

@@ -16,8 +16,10 @@
 
 use std::cmp::Ordering;
 
+use bumpalo::Bump;
 use glam::DVec3;
 
+use super::arena::Room;
 use super::extent::Extent;
 use super::line::{Direction, Hit, Line, Normal};
 use super::shading::{Shading, halfway};
@@ -116,7 +118,12 @@ impl<R: Real> Frame<R> {
     }
 
     /// The signs that a view of this frame is made with.
-    pub(super) fn bearings(&self, scene: &Scene, mirrored: bool) -> Result<Bearings, R::Doubt> {
+    pub(super) fn bearings<'f>(
+        &self,
+        scene: &Scene,
+        mirrored: bool,
+        arena: &'f Bump,
+    ) -> Result<Bearings<'f>, R::Doubt> {
         let mirror = self.mirror(scene).filter(|_| mirrored);
         let crossings = (0..scene.tetrahedra().len())
             .map(|index| self.tetrahedron(scene, index, mirror).crossing(&looking()));
@@ -127,7 +134,7 @@ impl<R: Real> Frame<R> {
         let parallel = beside.map(|x| x.sign().map(Ordering::is_eq));
         let same_way = eye.dot(to_light).sign().map(Ordering::is_gt);
         Ok(Bearings {
-            crossings: crossings.collect::<Result<_, _>>()?,
+            crossings: arena.alloc_slice_try_fill_iter(crossings)?,
             halfway: if all(parallel.into_iter().chain([same_way]))? {
                 Halfway::None
             } else {
@@ -141,9 +148,10 @@ impl<R: Real> Frame<R> {
 pub(super) type Crossing = [Ordering; 4];
 
 /// Signs that all pixels of a view share, and that any number can build on once they are decided.
-pub(super) struct Bearings {
+#[derive(Clone, Copy)]
+pub(super) struct Bearings<'f> {
     /// How eye rays cross each tetrahedron.
-    crossings: Vec<Crossing>,
+    crossings: &'f [Crossing],
     halfway: Halfway,
 }
 
@@ -158,7 +166,7 @@ enum Halfway {
     Poor(Vector<DoubleDouble>),
 }
 
-impl Bearings {
+impl Bearings<'_> {
     /// The same, with h computed by `refine` if that of `frame` is hardly known.
     pub(super) fn refined(
         self,
@@ -166,7 +174,7 @@ impl Bearings {
         frame: &Frame<Bounded>,
         mirrored: bool,
         refine: impl FnOnce() -> Vector<DoubleDouble>,
-    ) -> Bearings {
+    ) -> Self {
         let halfway = match self.halfway {
             Halfway::None => Halfway::None,
             other => {
@@ -185,17 +193,17 @@ impl Bearings {
 }
 
 /// Those of a frame: of the scene itself, and in the mirror where there is one.
-pub(super) struct FrameBearings {
-    pub(super) direct: Bearings,
-    pub(super) mirrored: Option<Bearings>,
+pub(super) struct FrameBearings<'f> {
+    pub(super) direct: Bearings<'f>,
+    pub(super) mirrored: Option<Bearings<'f>>,
 }
 
-impl FrameBearings {
+impl<'f> FrameBearings<'f> {
     /// `bearings` tells those of the scene itself (false) or in the mirror (true), where anything `mirrors`.
     pub(super) fn decide<D>(
         mirrors: bool,
-        bearings: impl Fn(bool) -> Result<Bearings, D>,
-    ) -> Result<FrameBearings, D> {
+        bearings: impl Fn(bool) -> Result<Bearings<'f>, D>,
+    ) -> Result<Self, D> {
         Ok(FrameBearings {
             direct: bearings(false)?,
             mirrored: if mirrors { Some(bearings(true)?) } else { None },
@@ -221,11 +229,11 @@ pub(super) fn looking<R: Real>() -> Direction<R> {
 }
 
 /// All solids and the light, turned, scaled, and for the mirror reflected.
-pub(super) struct View<R> {
+pub(super) struct View<'f, R> {
     /// Where each solid can be seen: spheres, then tetrahedra.
-    pub(super) extents: Vec<Extent>,
-    pub(super) spheres: Vec<Sphere<R>>,
-    pub(super) tetrahedra: Vec<TetrahedronInView<R>>,
+    pub(super) extents: &'f [Extent],
+    pub(super) spheres: &'f [Sphere<R>],
+    pub(super) tetrahedra: &'f [TetrahedronInView<R>],
     pub(super) shading: Shading<R>,
 }
 
@@ -251,15 +259,16 @@ pub(super) enum Solids {
     All,
 }
 
-impl<R: Real> View<R> {
+impl<'f, R: Real> View<'f, R> {
     /// The scene itself, or in the mirror.
     pub(super) fn new(
         scene: &Scene,
         frame: &Frame<R>,
-        bearings: &Bearings,
-        extents: &[Extent],
+        bearings: &Bearings<'_>,
+        extents: &'f [Extent],
         mirrored: bool,
-    ) -> View<R> {
+        room: &impl Room<'f>,
+    ) -> Self {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
         let to_light = frame.way_to_light(scene, mirrored);
         let halfway = match bearings.halfway {
@@ -299,9 +308,9 @@ impl<R: Real> View<R> {
                 }
             });
         View {
-            extents: extents.to_vec(),
-            spheres: spheres.collect(),
-            tetrahedra: tetrahedra.collect(),
+            extents,
+            spheres: room.lay(spheres),
+            tetrahedra: room.lay(tetrahedra),
             shading: Shading::new(scene, to_light, halfway),
         }
     }
@@ -355,7 +364,7 @@ impl<R: Real> View<R> {
             }
         }
         if solids != Solids::Spheres {
-            for (solid, t) in (self.spheres.len()..).zip(&self.tetrahedra) {
+            for (solid, t) in (self.spheres.len()..).zip(self.tetrahedra) {
                 if seen(solid) && (reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)?) {
                     t.solid
                         .first_hit(&t.from_eye, ray)?

@@ -1,8 +1,10 @@
 //! Promise: at angles whose sine and cosine are rational, every decision is that of exact arithmetic, whatever the number; a
 //! number that cannot tell says so.
 
+use bumpalo::Bump;
 use rayon::prelude::*;
 
+use super::super::arena::Arena;
 use super::super::decision::Decision;
 use super::super::extent::Extents;
 use super::super::ladder::{Ladder, Pixels, Rung};
@@ -53,18 +55,19 @@ impl Traced<'_> {
         Frame::new(sin, cos, self.size)
     }
 
-    fn bearings(&self) -> FrameBearings {
+    fn bearings<'f>(&self, arena: &'f Bump) -> FrameBearings<'f> {
         Expression::session(|| {
             let frame = self.frame::<Expression>();
-            let bearings = |mirrored| frame.bearings(self.scene, mirrored);
+            let bearings = |mirrored| frame.bearings(self.scene, mirrored, arena);
             let Ok(bearings) = FrameBearings::decide(mirrors(self.scene, self.stage), bearings);
             bearings
         })
     }
 
     /// What is decided for each pixel; `None` where that is left in doubt.
-    fn decisions<R: Real>(&self, bearings: &FrameBearings, pixels: &[(u32, u32)]) -> Decisions {
-        let extents = Extents::new(self.scene, &self.frame(), self.size);
+    fn decisions<R: Real>(&self, bearings: &FrameBearings<'_>, pixels: &[(u32, u32)]) -> Decisions {
+        let arena = Bump::new();
+        let extents = Extents::new(self.scene, &self.frame(), self.size, &arena);
         let picture = Picture::<R>::new(
             self.scene,
             self.stage,
@@ -72,6 +75,7 @@ impl Traced<'_> {
             self.size,
             bearings,
             &extents,
+            &&arena,
         );
         let decision = |&(column, row): &(u32, u32)| {
             let (decision, _) = picture.decide(column, row).ok()?;
@@ -104,11 +108,13 @@ pub(super) fn compare(
         turn,
         size,
     };
-    let bearings = traced.bearings();
+    let arenas = [Arena::default(), Arena::default(), Arena::default()];
+    let bearings = traced.bearings(&arenas[2].frame);
     let kernels: Vec<_> = [Rung::DoubleDouble, Rung::Double]
         .into_iter()
         .filter(|_| turn == TURNS[0])
-        .map(|lowest| Ladder::new(scene, stage, 0.0, size, lowest))
+        .zip(&arenas)
+        .map(|(lowest, arena)| Ladder::new(scene, stage, 0.0, size, lowest, arena))
         .collect();
     // Each chunk has one session of expressions.
     let chunks = pixels.par_chunks(64).map(|pixels| {
@@ -219,7 +225,8 @@ fn a_face_along_the_light_needs_no_digits() {
     .unwrap();
     for lowest in [Rung::DoubleDouble, Rung::Double] {
         for stage in [Stage::Shading, Stage::Shadow] {
-            let kernel = Ladder::new(&scene, stage, 0.3, 40, lowest);
+            let arena = Arena::default();
+            let kernel = Ladder::new(&scene, stage, 0.3, 40, lowest, &arena);
             let pixels = (0..1600).map(|i| kernel.pixel(i % 40, i / 40));
             let mut solid = 0;
             for ((decision, _), rung) in pixels {

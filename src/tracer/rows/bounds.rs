@@ -12,6 +12,7 @@ use super::shape::{Ellipse, Screen};
 use crate::number::{Bounded, DoubleDouble, Real};
 use crate::scene::Scene;
 use crate::stage::Stage;
+use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, Lines, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::sphere::Sphere;
@@ -80,7 +81,7 @@ struct Found {
 /// A sphere as rows shade it, and what its pixels are in truth.
 struct Case<'c> {
     picture: &'c Picture<'c, DoubleDouble>,
-    view: &'c View<DoubleDouble>,
+    view: &'c View<'c, DoubleDouble>,
     sphere: &'c Sphere<DoubleDouble>,
     color: Vector<DoubleDouble>,
     ball: Ball,
@@ -142,7 +143,7 @@ impl Case<'_> {
 }
 
 /// A picture, its view or that in the mirror, and what colours are multiplied with in that.
-type Seen<'s, R> = (&'s Picture<'s, R>, &'s View<R>, R);
+type Seen<'s, R> = (&'s Picture<'s, R>, &'s View<'s, R>, R);
 
 /// The spheres of a view, as f64 with bounds knows it, and in truth.
 fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &mut Found) {
@@ -171,8 +172,10 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
 }
 
 fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
-    let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Double);
-    let (known, truth) = (ladder.bounded(), &ladder.picture::<DoubleDouble>());
+    let arena = Arena::default();
+    let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Double, &arena);
+    let truth = ladder.picture::<DoubleDouble>(&&arena.frame);
+    let (known, truth) = (ladder.bounded(), &truth);
     let one = (Bounded::exact(1.0), DoubleDouble::exact(1.0));
     check_view(
         (known, &known.view, one.0),

@@ -13,11 +13,11 @@ use crate::number::Bounded;
 use crate::tracer::decision::Decision;
 
 /// What may stand between a pixel of a sphere and the light.
-pub(super) enum Caster {
+pub(super) enum Caster<'f> {
     /// Any point within all of these half-spaces is in its shadow.
-    Cell(Vec<Form>),
+    Cell(&'f [Form]),
     /// Any point that is before it, and from which the way to the light passes its centre near enough.
-    Ball(Box<Passing>),
+    Ball(&'f Passing),
 }
 
 /// Points in the shadow of a ball.
@@ -58,7 +58,7 @@ pub(super) struct Run<'r> {
 impl Run<'_> {
     /// Writes the decisions of some pixels, bit by bit in shadow or not.
     #[inline(always)]
-    pub(super) fn decide(&mut self, shaded: &ShadedBall, pixels: Range<usize>, in_shadow: u64) {
+    pub(super) fn decide(&mut self, shaded: &ShadedBall<'_>, pixels: Range<usize>, in_shadow: u64) {
         if let Some(decisions) = &mut self.decisions {
             for (i, decision) in decisions[pixels].iter_mut().enumerate() {
                 *decision = if in_shadow >> i & 1 == 1 {
@@ -93,7 +93,7 @@ pub(super) struct Along<V> {
 
 /// Shades a run of pixels that see a sphere.
 #[inline(always)]
-pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
+pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
     let ball = &shaded.ball;
     let width = S::f32s::LEN;
     let half = S::f64s::LEN;
@@ -208,7 +208,7 @@ pub(super) fn hits<S: Simd>(
 fn shadowed<S: Simd>(
     simd: S,
     ball: &Ball,
-    casters: &[Caster],
+    casters: &[Caster<'_>],
     shading: &Shading,
     m: f64,
     hits: &Hits<S::f64s, S::mask64s>,
@@ -303,7 +303,7 @@ fn power<S: Simd>(simd: S, x: S::f64s, exponent: u32) -> S::f64s {
 #[inline(always)]
 fn behind<S: Simd>(
     simd: S,
-    caster: &Caster,
+    caster: &Caster<'_>,
     m: f64,
     hits: &Hits<S::f64s, S::mask64s>,
 ) -> (S::mask64s, S::mask64s) {
@@ -312,7 +312,7 @@ fn behind<S: Simd>(
         Caster::Cell(forms) => {
             let mut inside = S::mask64s::splat(simd, true);
             let mut outside = S::mask64s::splat(simd, false);
-            for form in forms {
+            for form in *forms {
                 let depth = value::<S>(&along(simd, form, m), q, s);
                 inside &= depth.simd_gt(form.error);
                 outside |= depth.simd_lt(-form.error);
@@ -325,7 +325,7 @@ fn behind<S: Simd>(
                 moment,
                 reach,
                 error,
-            } = &**passing;
+            } = *passing;
             let ahead = value::<S>(&along(simd, before, m), q, s);
             let x = value::<S>(&along(simd, &moment[0], m), q, s);
             let y = value::<S>(&along(simd, &moment[1], m), q, s);
@@ -339,7 +339,7 @@ fn behind<S: Simd>(
     }
 }
 
-impl Caster {
+impl Caster<'_> {
     /// Whether it certainly throws no shadow on a stretch.
     pub(super) fn misses(&self, stretch: &Stretch) -> bool {
         match self {
@@ -359,9 +359,11 @@ impl Caster {
             }
         }
     }
+}
 
-    /// A sphere, `reach` being |l|² R².
-    pub(super) fn ball(before: Form, moment: [Form; 3], reach: Bounded) -> Caster {
+impl Passing {
+    /// `reach` is |l|² R² of a sphere.
+    pub(super) fn new(before: Form, moment: [Form; 3], reach: Bounded) -> Passing {
         let magnitudes: f64 = moment
             .iter()
             .map(|form| form.magnitude * form.magnitude)
@@ -372,11 +374,11 @@ impl Caster {
             .map(|form| (2.0 * form.magnitude + form.error) * form.error)
             .sum();
         let error = (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE;
-        Caster::Ball(Box::new(Passing {
+        Passing {
             before,
             moment,
             reach: reach.value(),
             error,
-        }))
+        }
     }
 }

@@ -3,6 +3,8 @@
 //! All eye rays go the same way. Two convex solids that a plane keeps apart are met on either side of it, so every ray that meets
 //! both meets first the one that it is on the side of before it crosses the plane. This needs no depth, and is known for a whole frame.
 
+use bumpalo::Bump;
+
 use crate::number::{Bounded, Real};
 use crate::tracer::vector::Vector;
 use crate::tracer::view::{View, looking};
@@ -11,22 +13,26 @@ use crate::tracer::view::{View, looking};
 const MOST: usize = 16;
 
 /// The order of the solids of a view.
-pub(super) struct Order {
+pub(super) struct Order<'f> {
     /// The number of its solids; 0 where nothing is known.
     count: usize,
     /// For each pair, whether the first is in front of the second.
-    in_front: Vec<Option<bool>>,
+    in_front: &'f [Option<bool>],
 }
 
-impl Order {
+impl<'f> Order<'f> {
     /// Of the solids of `view` with these numbers, spheres before tetrahedra.
-    pub(super) fn new(view: &View<Bounded>, solids: std::ops::Range<usize>) -> Order {
+    pub(super) fn new(
+        view: &View<'_, Bounded>,
+        solids: std::ops::Range<usize>,
+        arena: &'f Bump,
+    ) -> Self {
         let count = if solids.len() <= MOST {
             solids.len()
         } else {
             0
         };
-        let mut in_front = vec![None; count * count];
+        let in_front = arena.alloc_slice_fill_copy(count * count, None);
         for i in 0..count {
             for j in 0..i {
                 let known = is_in_front(view, solids.start + i, solids.start + j);
@@ -51,7 +57,7 @@ impl Order {
 }
 
 /// Whether solid `i` is in front of solid `j`; `None` where that is not known, or depends on the ray.
-fn is_in_front(view: &View<Bounded>, i: usize, j: usize) -> Option<bool> {
+fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
     let toward_j = match (view.spheres.get(i), view.spheres.get(j)) {
         (Some(a), Some(b)) => {
             let between = b.center - a.center;
@@ -66,7 +72,7 @@ fn is_in_front(view: &View<Bounded>, i: usize, j: usize) -> Option<bool> {
 }
 
 /// The way from solid `i`, a tetrahedron, to solid `j` across a face that keeps them apart.
-fn apart_by_face(view: &View<Bounded>, i: usize, j: usize) -> Option<Vector<Bounded>> {
+fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<Bounded>> {
     let t = view.tetrahedra.get(i.checked_sub(view.spheres.len())?)?;
     (0..4).find_map(|face| {
         let plane = t.solid.plane(face);

@@ -1,5 +1,7 @@
 //! The colours of a frame that are filled in.
 
+use bumpalo::Bump;
+use bumpalo::collections::Vec;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 
@@ -26,21 +28,21 @@ impl Paint {
 }
 
 /// All paints of a frame, as they are found to be needed.
-pub(super) struct Paints<'c> {
+pub(super) struct Paints<'f, 'c> {
     color: &'c dyn Fn(Decision) -> [f32; 3],
-    all: Vec<Paint>,
+    all: Vec<'f, Paint>,
 }
 
 /// Which of them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct PaintNumber(u32);
 
-impl<'c> Paints<'c> {
+impl<'f, 'c> Paints<'f, 'c> {
     /// `color` tells what decisions look like.
-    pub(super) fn new(color: &'c dyn Fn(Decision) -> [f32; 3]) -> Self {
+    pub(super) fn new(color: &'c dyn Fn(Decision) -> [f32; 3], arena: &'f Bump) -> Self {
         Paints {
             color,
-            all: Vec::new(),
+            all: Vec::new_in(arena),
         }
     }
 
@@ -49,15 +51,15 @@ impl<'c> Paints<'c> {
         PaintNumber(self.all.len() as u32 - 1)
     }
 
-    pub(super) fn all(self) -> AllPaints {
-        AllPaints(self.all)
+    pub(super) fn all(self) -> AllPaints<'f> {
+        AllPaints(self.all.into_bump_slice())
     }
 }
 
 /// The paints of a frame.
-pub(super) struct AllPaints(Vec<Paint>);
+pub(super) struct AllPaints<'f>(&'f [Paint]);
 
-impl std::ops::Index<PaintNumber> for AllPaints {
+impl std::ops::Index<PaintNumber> for AllPaints<'_> {
     type Output = Paint;
 
     fn index(&self, number: PaintNumber) -> &Paint {

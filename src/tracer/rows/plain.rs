@@ -28,7 +28,7 @@ impl Lane for f64 {
 
 /// Shades a run of pixels that see a sphere, in f32.
 #[inline(always)]
-pub(super) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
+pub(super) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
     let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
@@ -48,7 +48,7 @@ pub(super) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut R
 
 /// The same in f64, rounded once at the end.
 #[inline(always)]
-pub(super) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut Run<'_>) {
+pub(super) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
     let half = S::f64s::LEN;
     let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
@@ -77,7 +77,7 @@ pub(super) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedBall, run: &mut R
 #[inline(always)]
 fn put<S: Simd>(
     simd: S,
-    shaded: &ShadedBall,
+    shaded: &ShadedBall<'_>,
     run: &mut Run<'_>,
     first: &mut usize,
     mut channels: [S::f32s; 3],
@@ -99,7 +99,7 @@ fn put<S: Simd>(
 #[inline(always)]
 fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     simd: S,
-    shaded: &ShadedBall,
+    shaded: &ShadedBall<'_>,
     in_reach: &[usize],
     m: f64,
     x: f64,
@@ -183,7 +183,7 @@ fn value<S: Simd, V: SimdFloat<S, Element: Lane>>(simd: S, form: &Form, m: f64, 
 #[inline(always)]
 fn shadowed<S: Simd, V: SimdFloat<S, Element: Lane>>(
     simd: S,
-    caster: &Caster,
+    caster: &Caster<'_>,
     m: f64,
     q: V,
     s: V,
@@ -192,7 +192,7 @@ fn shadowed<S: Simd, V: SimdFloat<S, Element: Lane>>(
     let mut inside = V::Mask::splat(simd, true);
     match caster {
         Caster::Cell(forms) => {
-            for form in forms {
+            for form in *forms {
                 inside &= value::<S, V>(simd, form, m, q, s).simd_ge(zero);
             }
         }

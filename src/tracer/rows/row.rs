@@ -85,7 +85,7 @@ impl Row<'_> {
     pub(super) fn shade(
         &mut self,
         columns: Columns,
-        shaded: &ShadedBall,
+        shaded: &ShadedBall<'_>,
         in_shadow: &Paint,
         precision: Precision,
         screen: Screen,

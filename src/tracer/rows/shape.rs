@@ -445,19 +445,19 @@ impl Ellipse {
 }
 
 /// A convex part of the picture: what half-planes and an ellipse have in common.
-pub(super) struct Shape {
-    half_planes: Vec<HalfPlane>,
+pub(super) struct Shape<'f> {
+    half_planes: &'f [HalfPlane],
     ellipse: Option<Ellipse>,
     /// The rows that it can cross.
     rows: (u32, u32),
 }
 
-impl Shape {
+impl<'f> Shape<'f> {
     pub(super) fn new(
-        half_planes: Vec<HalfPlane>,
+        half_planes: &'f [HalfPlane],
         ellipse: Option<Ellipse>,
         screen: Screen,
-    ) -> Shape {
+    ) -> Self {
         let rows = ellipse
             .as_ref()
             .map_or((0, screen.size), |ellipse| ellipse.rows(screen));
@@ -469,7 +469,7 @@ impl Shape {
     }
 
     /// The same where it is known to cross no other than these rows.
-    pub(super) fn within(mut self, rows: (u32, u32)) -> Shape {
+    pub(super) fn within(mut self, rows: (u32, u32)) -> Self {
         self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
         self
     }
@@ -487,7 +487,7 @@ impl Shape {
             Some(ellipse) => ellipse.cross(simd, y, screen),
             None => Spans::whole(screen.size),
         };
-        for half_plane in &self.half_planes {
+        for half_plane in self.half_planes {
             spans.and(&half_plane.cross(simd, y, screen).spans(screen.size));
         }
         let within = |limit: u32| limit.saturating_sub(row);

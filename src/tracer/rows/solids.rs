@@ -1,18 +1,21 @@
 //! The solids as a frame's rows cross them: seen directly, or in the mirror.
 
-use std::iter;
 use std::ops::Range;
+
+use bumpalo::Bump;
+use bumpalo::collections::Vec as Growing;
 
 use super::Parts;
 use super::ball::Ball;
-use super::lanes::Caster;
+use super::lanes::{Caster, Passing};
 use super::order::Order;
 use super::paint::PaintNumber;
 use super::shape::{Ellipse, HalfPlane, MORE, Off, Screen, Shape, Sheet, U};
-use super::sweep::{Border, Borders};
+use super::sweep::Border;
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Support};
 use crate::stage::Stage;
+use crate::tracer::arena::collect;
 use crate::tracer::decision::{Decision, Seen};
 use crate::tracer::pixel::Picture;
 use crate::tracer::tetrahedron::HalfSpace;
@@ -20,37 +23,35 @@ use crate::tracer::vector::Vector;
 use crate::tracer::view::{View, looking};
 
 /// All solids that take part in a stage.
-pub(super) struct Solids {
+pub(super) struct Solids<'f> {
     pub(super) mirrored: bool,
-    /// Whether points can be in shadow.
-    pub(super) shadows: bool,
-    pub(super) solids: Vec<Solid>,
+    pub(super) solids: &'f [Solid<'f>],
     /// Which is in front of which.
-    pub(super) order: Order,
+    pub(super) order: Order<'f>,
 }
 
 /// One of them.
-pub(super) struct Solid {
+pub(super) struct Solid<'f> {
     pub(super) side: Side,
-    depth: Depth,
-    pub(super) body: Body,
+    depth: Depth<'f>,
+    pub(super) body: Body<'f>,
 }
 
 /// How its pixels are coloured.
-pub(super) enum Body {
+pub(super) enum Body<'f> {
     /// All alike.
     Flat(PaintNumber),
-    Ball(Box<ShadedBall>),
-    Facets(Vec<Facet>, Vec<Pair>),
+    Ball(&'f ShadedBall<'f>),
+    Facets(&'f [Facet], &'f [Pair]),
     /// Each is to be asked for.
     Unknown,
 }
 
 /// A sphere that is shaded.
-pub(super) struct ShadedBall {
+pub(super) struct ShadedBall<'f> {
     pub(super) ball: Ball,
     /// What may throw a shadow on it.
-    pub(super) casters: Vec<Caster>,
+    pub(super) casters: &'f [Caster<'f>],
     /// Its decision in the light.
     pub(super) lit: Decision,
     pub(super) in_shadow: PaintNumber,
@@ -73,7 +74,7 @@ pub(super) struct Pair {
 }
 
 /// The parameter at which eye rays enter.
-enum Depth {
+enum Depth<'f> {
     /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `ball.rs`.
     Ball {
         off: Off,
@@ -85,31 +86,45 @@ enum Depth {
         support: Support,
     },
     /// The largest of some linear functions of X and Y, each with a bound on its error.
-    Facets(Vec<([f64; 3], f64)>),
+    Facets(&'f [([f64; 3], f64)]),
 }
 
-impl Solids {
+impl<'f> Solids<'f> {
     pub(super) fn new(
         picture: &Picture<'_, Bounded>,
-        view: &View<Bounded>,
+        view: &View<'_, Bounded>,
         mirrored: bool,
-        parts: &mut Parts<'_>,
-    ) -> Solids {
-        let screen = parts.screen;
+        parts: &mut Parts<'f, '_>,
+    ) -> Self {
+        let (screen, arena) = (parts.screen, parts.arena);
         let (scene, stage) = (picture.scene, picture.stage);
         let count = view.spheres.len();
-        let mut all = Solids {
-            mirrored,
-            shadows: stage >= Stage::Shadow,
-            solids: Vec::new(),
-            order: Order::new(
-                view,
-                match stage {
-                    Stage::Spheres => 0..count,
-                    Stage::Tetrahedron => count..count + view.tetrahedra.len(),
-                    _ => 0..count + view.tetrahedra.len(),
-                },
-            ),
+        // Whether points can be in shadow.
+        let shadows = stage >= Stage::Shadow;
+        let numbers = match stage {
+            Stage::Spheres => 0..count,
+            Stage::Tetrahedron => count..count + view.tetrahedra.len(),
+            _ => 0..count + view.tetrahedra.len(),
+        };
+        let order = Order::new(view, numbers.clone(), arena);
+        let decision = |solid: usize, face: Option<usize>, in_shadow: bool| {
+            let seen = Seen {
+                solid: solid as u16,
+                face: face.map(|face| face as u8),
+                in_shadow,
+            };
+            if mirrored {
+                Decision::Mirrored(seen)
+            } else {
+                Decision::Solid(seen)
+            }
+        };
+        let mut solids = Growing::with_capacity_in(numbers.len(), arena);
+        let border = |place: usize, side: Side| match side {
+            _ if !mirrored => Some(Border::Direct(place)),
+            // Below the surface nothing is mirrored.
+            Side::Below => None,
+            _ => Some(Border::Mirrored(place)),
         };
         let facts = scene.facts();
         let rising = -scene.light().direction.y;
@@ -134,10 +149,7 @@ impl Solids {
         if stage != Stage::Tetrahedron {
             for (index, sphere) in view.spheres.iter().enumerate() {
                 let ellipse = Ellipse::outline(sphere.center, sphere.radius, screen);
-                let mut paint = |in_shadow| {
-                    let decision = all.decision(index as u16, None, in_shadow);
-                    parts.paints.of(decision)
-                };
+                let mut paint = |in_shadow| parts.paints.of(decision(index, None, in_shadow));
                 let body = if stage == Stage::Spheres {
                     Body::Flat(paint(false))
                 } else if surface_shades(index) {
@@ -145,125 +157,93 @@ impl Solids {
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
-                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, all.shadows);
-                    let casters = if all.shadows {
-                        casters_on(&ball, index, view, &facts.casters[index])
+                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, shadows);
+                    let casters = if shadows {
+                        casters_on(&ball, index, view, &facts.casters[index], arena)
                     } else {
-                        Vec::new()
+                        &[]
                     };
-                    Body::Ball(Box::new(ShadedBall {
+                    Body::Ball(arena.alloc(ShadedBall {
                         ball,
                         casters,
-                        lit: all.decision(index as u16, None, false),
-                        in_shadow: paint(all.shadows),
+                        lit: decision(index, None, false),
+                        in_shadow: paint(shadows),
                     }))
                 };
                 let depth = depth_of_ball(sphere.center, &ellipse, sphere.support, screen);
-                all.push(
-                    Solid {
-                        side: facts.sides[index],
-                        depth,
-                        body,
-                    },
-                    Shape::new(Vec::new(), Some(ellipse), screen).within(rows),
-                    &mut parts.borders,
-                );
+                let side = facts.sides[index];
+                if let Some(border) = border(solids.len(), side) {
+                    let outline = Shape::new(&[], Some(ellipse), screen).within(rows);
+                    parts.borders.add(outline, border);
+                }
+                solids.push(Solid { side, depth, body });
             }
         }
         if stage != Stage::Spheres {
-            for (index, t) in (count..).zip(&view.tetrahedra) {
-                let planes = |half_spaces: &mut dyn Iterator<Item = HalfSpace<Bounded>>| {
-                    let sheet = eye_sheet(screen);
-                    half_spaces
-                        .map(|half_space| HalfPlane::of(&half_space, &sheet, screen))
-                        .collect::<Vec<_>>()
-                };
+            for (index, t) in (count..).zip(view.tetrahedra) {
+                let sheet = eye_sheet(screen);
+                let plane = |half_space| HalfPlane::of(&half_space, &sheet, screen);
                 let (first, end) = view.extents[index].rows(screen.size);
                 let rows = (first.max(rows.0), end.min(rows.1));
-                let outline = Shape::new(planes(&mut t.solid.met(&t.from_eye)), None, screen);
-                let entered: Vec<usize> = t.from_eye.entered().collect();
-                let (mut facets, mut depths) = (Vec::new(), Vec::new());
-                for &face in &entered {
+                let planes = collect(arena, t.solid.met(&t.from_eye).map(plane));
+                let outline = Shape::new(planes, None, screen);
+                let mut facets = Growing::new_in(arena);
+                let mut depths = Growing::new_in(arena);
+                for face in t.from_eye.entered() {
                     let (sheet, depth) = face_sheet(t.solid.plane(face), screen);
                     depths.push(depth);
-                    let turned_away = all.shadows && t.solid.turned_away(face);
-                    let shadows = if all.shadows && !turned_away {
-                        let casters = facts.casters[index].iter().copied();
-                        shadows_on(&sheet, view, casters, |_| false, screen)
+                    let turned_away = shadows && t.solid.turned_away(face);
+                    let casters: &[u16] = if shadows && !turned_away {
+                        &facts.casters[index]
                     } else {
-                        Vec::new()
+                        &[]
                     };
-                    let mut paint = |in_shadow| {
-                        let decision = all.decision(index as u16, Some(face as u8), in_shadow);
-                        parts.paints.of(decision)
-                    };
+                    let casters = casters.iter().copied();
+                    let thrown = shadows_on(&sheet, view, casters, |_| false, screen, arena);
+                    let mut paint =
+                        |in_shadow| parts.paints.of(decision(index, Some(face), in_shadow));
                     facets.push(Facet {
                         lit: paint(false),
-                        in_shadow: paint(all.shadows),
+                        in_shadow: paint(shadows),
                         turned_away,
-                        shadows: parts.borders.add_details(shadows.into_iter(), rows),
+                        shadows: parts.borders.add_details(thrown, rows),
                     });
                 }
-                let place = |face: usize| entered.iter().position(|&other| other == face);
-                let sheet = eye_sheet(screen);
-                let pairs = t
-                    .solid
-                    .entered_pairs(&t.from_eye)
-                    .filter_map(|(i, j, first)| {
-                        let first = HalfPlane::of(&first, &sheet, screen);
-                        let first = Shape::new(vec![first], None, screen);
-                        Some(Pair {
-                            facets: (place(i)?, place(j)?),
-                            first: parts.borders.add_details(iter::once(first), rows).start,
-                        })
+                let place = |face: usize| t.from_eye.entered().position(|other| other == face);
+                let pairs = t.solid.entered_pairs(&t.from_eye);
+                let pairs = pairs.filter_map(|(i, j, first)| {
+                    let first = Shape::new(arena.alloc([plane(first)]), None, screen);
+                    Some(Pair {
+                        facets: (place(i)?, place(j)?),
+                        first: parts.borders.add_details([first], rows).start,
                     })
-                    .collect();
+                });
+                let pairs = collect(arena, pairs);
                 let body = if surface_shades(index) {
                     Body::Unknown
                 } else {
-                    Body::Facets(facets, pairs)
+                    Body::Facets(facets.into_bump_slice(), pairs)
                 };
-                all.push(
-                    Solid {
-                        side: facts.sides[index],
-                        depth: Depth::Facets(depths),
-                        body,
-                    },
-                    outline.within(rows),
-                    &mut parts.borders,
-                );
+                let side = facts.sides[index];
+                if let Some(border) = border(solids.len(), side) {
+                    parts.borders.add(outline.within(rows), border);
+                }
+                solids.push(Solid {
+                    side,
+                    depth: Depth::Facets(depths.into_bump_slice()),
+                    body,
+                });
             }
         }
-        all
-    }
-
-    fn push(&mut self, solid: Solid, outline: Shape, borders: &mut Borders) {
-        let place = self.solids.len();
-        if !self.mirrored {
-            borders.add(outline, Border::Direct(place));
-        } else if solid.side != Side::Below {
-            // Below the surface nothing is mirrored.
-            borders.add(outline, Border::Mirrored(place));
-        }
-        self.solids.push(solid);
-    }
-
-    /// What pixels of a solid show.
-    pub(super) fn decision(&self, solid: u16, face: Option<u8>, in_shadow: bool) -> Decision {
-        let seen = Seen {
-            solid,
-            face,
-            in_shadow,
-        };
-        if self.mirrored {
-            Decision::Mirrored(seen)
-        } else {
-            Decision::Solid(seen)
+        Solids {
+            mirrored,
+            solids: solids.into_bump_slice(),
+            order,
         }
     }
 }
 
-impl Solid {
+impl Solid<'_> {
     /// Bounds on the parameter at which the eye rays at Y, from one X to another, enter it.
     pub(super) fn depth(&self, y: f64, ends: [f64; 2]) -> (f64, f64) {
         match &self.depth {
@@ -309,7 +289,7 @@ impl Solid {
     }
 
     /// Whether both are the same sphere.
-    pub(super) fn is_same_sphere(&self, other: &Solid) -> bool {
+    pub(super) fn is_same_sphere(&self, other: &Solid<'_>) -> bool {
         match (&self.depth, &other.depth) {
             (Depth::Ball { support: a, .. }, Depth::Ball { support: b, .. }) => a == b,
             _ => false,
@@ -322,7 +302,7 @@ fn depth_of_ball(
     outline: &Ellipse,
     support: Support,
     screen: Screen,
-) -> Depth {
+) -> Depth<'static> {
     let [three, ten] = [3.0, 10.0].map(Bounded::exact);
     // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
     let constant = ten * (Bounded::exact(screen.reach) - center.z) - three * center.y;
@@ -387,15 +367,16 @@ fn face_sheet(face: HalfSpace<Bounded>, screen: Screen) -> (Sheet, ([f64; 3], f6
 
 /// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead` of all the sheet's pixels it is
 /// not asked whether it is.
-pub(super) fn shadows_on(
+pub(super) fn shadows_on<'f>(
     sheet: &Sheet,
-    view: &View<Bounded>,
+    view: &View<'_, Bounded>,
     casters: impl Iterator<Item = u16>,
     is_ahead: impl Fn(usize) -> bool,
     screen: Screen,
-) -> Vec<Shape> {
+    arena: &'f Bump,
+) -> impl Iterator<Item = Shape<'f>> {
     let to_light = view.shading.to_light;
-    let shape = |caster: u16| {
+    let shape = move |caster: u16| {
         let caster = usize::from(caster);
         let is_ahead = is_ahead(caster);
         match view.spheres.get(caster) {
@@ -415,47 +396,52 @@ pub(super) fn shadows_on(
                     sheet,
                     screen,
                 );
-                Shape::new(before.collect(), Some(ellipse), screen)
+                Shape::new(collect(arena, before), Some(ellipse), screen)
             }
             None => {
                 let t = &view.tetrahedra[caster - view.spheres.len()];
                 let plane = |half_space| HalfPlane::of(&half_space, sheet, screen);
                 let planes = if is_ahead {
-                    t.solid.met(&t.from_light).map(plane).collect()
+                    collect(arena, t.solid.met(&t.from_light).map(plane))
                 } else {
-                    t.solid.ahead(&t.from_light).map(plane).collect()
+                    collect(arena, t.solid.ahead(&t.from_light).map(plane))
                 };
                 Shape::new(planes, None, screen)
             }
         }
     };
-    casters.map(shape).collect()
+    casters.map(shape)
 }
 
 /// What may shade the pixels of a sphere.
-fn casters_on(ball: &Ball, index: usize, view: &View<Bounded>, casters: &[u16]) -> Vec<Caster> {
+fn casters_on<'f>(
+    ball: &Ball,
+    index: usize,
+    view: &View<'_, Bounded>,
+    casters: &[u16],
+    arena: &'f Bump,
+) -> &'f [Caster<'f>] {
     let to_light = view.shading.to_light;
     let own = view.spheres[index].support;
-    casters
-        .iter()
-        .filter_map(|&caster| {
-            let caster = usize::from(caster);
-            match view.spheres.get(caster) {
-                // A ray leaves its own sphere, also where that is listed twice.
-                Some(sphere) if sphere.support == own => None,
-                Some(sphere) => {
-                    let (moment, before) = ball.around(sphere.center, &to_light);
-                    let reach = to_light.squared_length * sphere.radius.squared();
-                    Some(Caster::ball(before, moment, reach))
-                }
-                None => {
-                    let t = &view.tetrahedra[caster - view.spheres.len()];
-                    let ahead = t.solid.ahead(&t.from_light);
-                    Some(Caster::Cell(
-                        ahead.map(|half_space| ball.inside(&half_space)).collect(),
-                    ))
-                }
+    let casters = casters.iter().filter_map(|&caster| {
+        let caster = usize::from(caster);
+        match view.spheres.get(caster) {
+            // A ray leaves its own sphere, also where that is listed twice.
+            Some(sphere) if sphere.support == own => None,
+            Some(sphere) => {
+                let (moment, before) = ball.around(sphere.center, &to_light);
+                let reach = to_light.squared_length * sphere.radius.squared();
+                Some(Caster::Ball(
+                    arena.alloc(Passing::new(before, moment, reach)),
+                ))
             }
-        })
-        .collect()
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let ahead = t.solid.ahead(&t.from_light);
+                let forms = ahead.map(|half_space| ball.inside(&half_space));
+                Some(Caster::Cell(collect(arena, forms)))
+            }
+        }
+    });
+    collect(arena, casters)
 }

@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use bumpalo::Bump;
+use bumpalo::collections::Vec as Growing;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::shape::{Screen, Shape};
@@ -22,17 +24,31 @@ pub(super) enum Border {
     Mirrored(usize),
 }
 
-/// Every border of a frame. Each is known by its number.
-#[derive(Default)]
-pub(super) struct Borders {
-    shapes: Vec<Shape>,
-    /// The rows that each can cross.
-    rows: Vec<(u32, u32)>,
-    of: Vec<Border>,
+/// All borders of a frame, as they are found. Each is known by its number.
+pub(super) struct Borders<'f> {
+    shapes: Growing<'f, Shape<'f>>,
+    rows: Growing<'f, (u32, u32)>,
+    of: Growing<'f, Border>,
 }
 
-impl Borders {
-    pub(super) fn add(&mut self, shape: Shape, of: Border) -> usize {
+/// The borders of a frame.
+pub(super) struct AllBorders<'f> {
+    shapes: &'f [Shape<'f>],
+    /// The rows that each can cross.
+    rows: &'f [(u32, u32)],
+    of: &'f [Border],
+}
+
+impl<'f> Borders<'f> {
+    pub(super) fn new(arena: &'f Bump) -> Self {
+        Borders {
+            shapes: Growing::new_in(arena),
+            rows: Growing::new_in(arena),
+            of: Growing::new_in(arena),
+        }
+    }
+
+    pub(super) fn add(&mut self, shape: Shape<'f>, of: Border) -> usize {
         self.rows.push(shape.rows());
         self.shapes.push(shape);
         self.of.push(of);
@@ -42,7 +58,7 @@ impl Borders {
     /// Details of a solid that is seen in these rows only. Returns their numbers.
     pub(super) fn add_details(
         &mut self,
-        shapes: impl Iterator<Item = Shape>,
+        shapes: impl IntoIterator<Item = Shape<'f>>,
         rows: (u32, u32),
     ) -> Range<usize> {
         let first = self.of.len();
@@ -50,6 +66,14 @@ impl Borders {
             self.add(shape.within(rows), Border::Detail);
         }
         first..self.of.len()
+    }
+
+    pub(super) fn all(self) -> AllBorders<'f> {
+        AllBorders {
+            shapes: self.shapes.into_bump_slice(),
+            rows: self.rows.into_bump_slice(),
+            of: self.of.into_bump_slice(),
+        }
     }
 }
 
@@ -169,7 +193,7 @@ pub(super) struct Sweep {
 
 impl Sweep {
     /// Prepares for rows of a frame.
-    pub(super) fn begin(&mut self, borders: &Borders) {
+    pub(super) fn begin(&mut self, borders: &AllBorders<'_>) {
         self.first = None;
         self.crossed.clear();
         self.crossings.clear();
@@ -184,7 +208,7 @@ impl Sweep {
     pub(super) fn enter(
         &mut self,
         row: u32,
-        borders: &Borders,
+        borders: &AllBorders<'_>,
         level: Level,
         screen: Screen,
     ) -> bool {
@@ -253,7 +277,7 @@ impl Sweep {
     }
 
     /// Goes over a crossing.
-    pub(super) fn pass(&mut self, crossing: usize, borders: &Borders) {
+    pub(super) fn pass(&mut self, crossing: usize, borders: &AllBorders<'_>) {
         let at = self.crossings[crossing] as u32;
         let (border, _) = self.crossed[(at >> 2) as usize];
         let after = KINDS[(at & 3) as usize];
@@ -262,7 +286,7 @@ impl Sweep {
 
     /// How the borders cross the rows from `first` on.
     #[inline(always)]
-    fn cross<S: Simd>(&mut self, simd: S, borders: &Borders, first: u32, screen: Screen) {
+    fn cross<S: Simd>(&mut self, simd: S, borders: &AllBorders<'_>, first: u32, screen: Screen) {
         for (border, &(from, to)) in borders.rows.iter().enumerate() {
             if from < first + ROWS as u32 && to > first {
                 let spans = borders.shapes[border].cross(simd, first, screen);

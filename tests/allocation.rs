@@ -1,0 +1,58 @@
+//! Promise: on one thread a frame asks the system for no memory, once the tracer has seen frames like it.
+
+use allocation_counter::measure;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer, camera};
+
+/// How often each frame of an animation allocates: when it is the first of its round, and when all have been traced twice.
+fn allocations(
+    scene: &Scene,
+    (stage, kernel): (Stage, Kernel),
+    size: u32,
+    retained: bool,
+) -> (u64, Vec<u64>) {
+    let mut tracer = Tracer::new(kernel, 1).unwrap();
+    let mut image = Image::new(size).unwrap();
+    let mut frame = |number| {
+        let alpha = camera::frame_angle(number);
+        let measured = measure(|| {
+            if retained {
+                tracer.retrace(scene, stage, alpha, &mut image).unwrap();
+            } else {
+                tracer.trace(scene, stage, alpha, &mut image).unwrap();
+            }
+        });
+        measured.count_total
+    };
+    let first = frame(0);
+    for number in (0..42).chain(0..1) {
+        frame(number);
+    }
+    (first, (0..21).map(frame).collect())
+}
+
+#[test]
+fn a_frame_allocates_nothing() {
+    let crowd = Scene::from_toml(include_str!("scenes/crowd.toml")).unwrap();
+    let check = |(name, scene): (&str, &Scene), of: (Stage, Kernel), size, retained| {
+        let (first, counts) = allocations(scene, of, size, retained);
+        assert!(first > 0, "{name}, {of:?}: nothing is counted");
+        assert_eq!(counts, [0; 21], "{name}, {of:?}, N = {size}, {retained}");
+    };
+    let builtin = Scene::builtin();
+    for scene in [("built-in", &builtin), ("crowd", &crowd)] {
+        for kernel in [Kernel::Exact, Kernel::Fast, Kernel::Double] {
+            for stage in Stage::ALL {
+                for retained in [false, true] {
+                    check(scene, (stage, kernel), 200, retained);
+                }
+            }
+        }
+    }
+    // Rows that are streamed past the caches lie in a buffer first.
+    check(
+        ("built-in", &builtin),
+        (Stage::Animation, Kernel::Exact),
+        1500,
+        false,
+    );
+}
