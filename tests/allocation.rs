@@ -1,4 +1,5 @@
 //! Promise: on one thread a frame asks the system for no memory, once the tracer has seen frames like it.
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use allocation_counter::measure;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer, camera};

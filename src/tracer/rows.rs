@@ -38,7 +38,7 @@
 //!   in two vectors, and one in a whole run, which nearly every run passes; crossings narrowed to columns by vectors. The end of
 //!   a sphere's light as one more border would cost more crossings (5 ns each) than the pixels behind it take.
 //!
-//! What is left is the structure of rows (0.05), shading (0.05), filling (0.03), and what a frame needs before its first row (0.007).
+//! What is left is the structure of rows (0.05), shading (0.05), filling (0.03), and what a frame needs before its first row (0.01).
 //! Of the shading of the spheres in stage 4, a quarter goes to where they are hit
 //! and how they face the light, two fifths to the colour, a third to rounding, its test, and interleaving.
 
