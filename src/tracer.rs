@@ -166,7 +166,8 @@ pub struct Tracer {
     simd: Simd,
     progress: Progress,
     in_doubt: InDoubt,
-    arena: Arena,
+    /// Behind a mutex that nobody locks, so that a tracer can be shared to explain pixels.
+    arena: Mutex<Arena>,
     /// What is known of the rows of the frame that was traced last to be traced over.
     memory: Vec<Memory>,
     /// The number of that frame; 0 before there is one.
@@ -190,7 +191,7 @@ impl Tracer {
             frame: 0,
             progress: Progress::default(),
             in_doubt: InDoubt::default(),
-            arena: Arena::default(),
+            arena: Mutex::default(),
         })
     }
 
@@ -391,7 +392,7 @@ impl Tracer {
             _ => None,
         };
         self.progress.set(0);
-        let mut arena = std::mem::take(&mut self.arena);
+        let mut arena = std::mem::take(inner(&mut self.arena));
         arena.clear();
         let mut memory = std::mem::take(&mut self.memory);
         let (remembered, samples) = match extent {
@@ -432,7 +433,7 @@ impl Tracer {
                 self.trace_rows(&ladder, Precision::Bounded, target, &arena)
             }
         };
-        self.arena = arena;
+        *inner(&mut self.arena) = arena;
         self.memory = memory;
         Ok(())
     }

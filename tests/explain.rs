@@ -154,3 +154,13 @@ fn the_command_prints_it() {
     );
     assert_eq!(program(&["explain", "1", "1"]).status.code(), Some(2));
 }
+
+#[test]
+fn threads_share_a_tracer() {
+    let (scene, tracer) = (Scene::builtin(), Tracer::new(Kernel::Exact, 1).unwrap());
+    let explain = || tracer.explain(&scene, Stage::Animation, 0.3, 60, (30, 20));
+    std::thread::scope(|threads| {
+        let other = threads.spawn(explain);
+        assert_eq!(explain().unwrap(), other.join().unwrap().unwrap());
+    });
+}
