@@ -45,6 +45,7 @@
 mod ball;
 #[cfg(test)]
 mod bounds;
+mod chord;
 mod lanes;
 mod order;
 mod paint;
@@ -68,6 +69,7 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
+use chord::AllChords;
 use lanes::Shading;
 use paint::{AllPaints, PaintNumber, Paints};
 use plan::{Contest, Plan, Seen, Show};
@@ -88,6 +90,8 @@ pub(super) struct Rows<'f, P> {
     direct: Solids<'f>,
     floor: Option<Floor<'f>>,
     paints: AllPaints<'f>,
+    /// How many spheres are shaded.
+    balls: usize,
     background: PaintNumber,
     /// The picture of code 2-1, where that is the stage.
     quadrants: Option<[PaintNumber; 4]>,
@@ -111,6 +115,7 @@ struct Parts<'f, 'c> {
     arena: &'f Bump,
     borders: Borders<'f>,
     paints: Paints<'f, 'c>,
+    balls: usize,
 }
 
 /// The surface.
@@ -128,6 +133,13 @@ pub(super) struct Scratch {
     sweep: Sweep,
     plan: Plan,
     settled: Vec<(Columns, Show)>,
+    shade: Shade,
+}
+
+/// What the shading of spheres needs, kept for the next.
+#[derive(Default)]
+struct Shade {
+    chords: AllChords,
     shading: Shading,
 }
 
@@ -152,6 +164,7 @@ impl<'f, P: Lines> Rows<'f, P> {
             arena,
             borders: Borders::new(arena),
             paints: Paints::new(&color, arena),
+            balls: 0,
         };
         let is_quadrants = picture.stage == Stage::Image;
         let background = parts.paints.of(Decision::Background);
@@ -166,6 +179,7 @@ impl<'f, P: Lines> Rows<'f, P> {
             level,
             borders: parts.borders.all(),
             paints: parts.paints.all(),
+            balls: parts.balls,
             direct,
             floor,
             background,
@@ -177,6 +191,7 @@ impl<'f, P: Lines> Rows<'f, P> {
     /// What tracing rows of this frame needs.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
         scratch.sweep.begin(&self.borders);
+        scratch.shade.chords.begin(self.balls);
     }
 
     /// Traces a row into its samples, and its decisions where they are asked for. How many pixels double-doubles and arbitrary
@@ -192,6 +207,8 @@ impl<'f, P: Lines> Rows<'f, P> {
         let screen = self.screen;
         let mut row = Row {
             level: self.level,
+            precision: self.precision,
+            screen,
             number,
             y: screen.place(number),
             samples,
@@ -228,12 +245,12 @@ impl<'f, P: Lines> Rows<'f, P> {
             let to = sweep.place(crossing).unwrap_or(screen.size);
             match seen {
                 Seen::Only(shows) => {
-                    self.write(&mut row, (from, to), shows, &mut scratch.shading);
+                    self.write(&mut row, (from, to), shows, &mut scratch.shade);
                 }
                 Seen::First(_) => {
                     self.settle(plan, seen, row.y, (from, to), &mut scratch.settled);
                     for (columns, shows) in scratch.settled.drain(..) {
-                        self.write(&mut row, columns, shows, &mut scratch.shading);
+                        self.write(&mut row, columns, shows, &mut scratch.shade);
                     }
                 }
             }
@@ -388,14 +405,18 @@ impl<'f, P: Lines> Rows<'f, P> {
     }
 
     /// Columns that all show the same.
-    fn write(&self, row: &mut Row<'_>, columns: Columns, shows: Show, shading: &mut Shading) {
+    fn write(&self, row: &mut Row<'_>, columns: Columns, shows: Show, shade: &mut Shade) {
         match shows {
             Show::Paint(paint) => row.fill(columns, &self.paints[paint]),
             Show::Ball { mirrored, solid } => {
                 if let Body::Ball(ball) = &self.solids(mirrored).solids[solid as usize].body {
                     let paint = &self.paints[ball.in_shadow];
-                    row.shade(columns, ball, paint, self.precision, self.screen, shading);
-                    row.ask(shading.doubts.drain(..), self.pixels);
+                    let Shade { chords, shading } = shade;
+                    let chord = chords.of(ball, row.number, self.level, self.screen);
+                    row.shade(columns, ball, &chord, paint, shading);
+                    if !shading.doubts.is_empty() {
+                        row.ask(shading.doubts.drain(..), self.pixels);
+                    }
                 }
             }
             Show::Unknown => row.ask(columns.0..columns.1, self.pixels),

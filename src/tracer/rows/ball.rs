@@ -7,6 +7,8 @@
 //! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at the hit are linear forms in q, m
 //! and s, and per pixel there are a root, a few products and sums.
 
+use std::cmp::Ordering;
+
 use super::shape::{Ellipse, MORE, Off, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
@@ -28,13 +30,15 @@ const DEPTHS: [f64; ZONES] = [8.0, 128.0];
 /// constant + across · q + off · m + out · s, and a bound on its error in f64 in any zone.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
-    constant: f64,
+    pub(super) constant: f64,
     pub(super) across: f64,
-    off: f64,
+    pub(super) off: f64,
     pub(super) out: f64,
     pub(super) error: f64,
     /// A bound on its magnitude.
     pub(super) magnitude: f64,
+    /// Whether `out` is certainly not negative, or certainly not positive.
+    pub(super) is_concave: Option<bool>,
 }
 
 impl Form {
@@ -84,6 +88,8 @@ pub(super) struct Halfway {
     pub(super) errors: [f64; 2],
     /// 2¹⁻ⁿ.
     pub(super) least: f64,
+    /// Where m is farther than this from that of R h there is no highlight.
+    pub(super) reach: f64,
 }
 
 /// What is known about q, m and s of any pixel: a bound on their magnitudes, and on their errors.
@@ -117,6 +123,7 @@ impl Known {
             out: factors[2].value(),
             error: self.error(constant, &factors, self.out[ZONES - 1]),
             magnitude: (constant.value().abs() + self.magnitude(&factors)) * MORE,
+            is_concave: factors[2].sign().ok().map(Ordering::is_ge),
         }
     }
 
@@ -137,8 +144,8 @@ impl Known {
         (constant.error() + carried + rounded) * MORE
     }
 
-    /// `h` is of length 1, `radius` the sphere's, n the exponent.
-    fn halfway(&self, h: Vector<Bounded>, radius: Bounded, n: f64) -> Halfway {
+    /// `h` is of length 1, `radius` the sphere's, n the exponent, and below `highlight` nobody sees (n·h)ⁿ.
+    fn halfway(&self, h: Vector<Bounded>, radius: Bounded, n: f64, highlight: f64) -> Halfway {
         let at = in_axes(h).map(|component| component * radius);
         // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
         // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
@@ -163,6 +170,9 @@ impl Known {
             at: at.map(Bounded::value),
             errors,
             least: libm::exp2(1.0 - n),
+            // 1 − n·h = |n − h|²/2.
+            reach: ((2.0 * (1.0 - highlight)).sqrt() * self.radius + self.off + at[1].error())
+                * MORE,
         }
     }
 }
@@ -185,21 +195,23 @@ pub(super) struct Ball {
     pub(super) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(super) highlight: f64,
-    /// Red, green and blue.
-    pub(super) channels: [Channel; 3],
+    pub(super) color: Coefficients<Cycle>,
     /// In each zone, a bound on the error of any channel, but for what the power's adds.
     pub(super) errors: [f64; ZONES],
     /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
     pub(super) shadows: bool,
 }
 
-/// ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ: a channel of the colour, its coefficients multiplied out.
+/// What is multiplied in ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the colour.
 #[derive(Clone, Copy)]
-pub(super) struct Channel {
-    pub(super) ambient: f64,
-    pub(super) diffuse: f64,
-    pub(super) specular: f64,
+pub(super) struct Coefficients<T> {
+    pub(super) ambient: T,
+    pub(super) diffuse: T,
+    pub(super) specular: T,
 }
+
+/// Red, green, blue, red and so on, as samples lie in memory: three vectors of up to 8 lanes.
+pub(super) type Cycle = [f64; 24];
 
 impl Ball {
     /// `color` is the sphere's, times the reflectance in the mirror.
@@ -230,9 +242,11 @@ impl Ball {
         let light = known.form(zero, to_light);
         let exponent = shading.exponent();
         let n = f64::from(exponent);
+        // (1 − x)ⁿ ≤ e^−nx.
+        let highlight = libm::exp(CUT / n);
         let halfway = shading
             .halfway()
-            .map(|h| known.halfway(h, sphere.radius, n));
+            .map(|h| known.halfway(h, sphere.radius, n, highlight));
         // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that is, if its error is no more than that of a
         // factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
@@ -260,11 +274,7 @@ impl Ball {
             for (all, light) in errors.iter_mut().zip(light_errors) {
                 *all = error(light).max(*all);
             }
-            Channel {
-                ambient: a.value(),
-                diffuse: d.value(),
-                specular: s.value(),
-            }
+            parts.map(Bounded::value)
         };
         let [red, green, blue] = shading.coefficients();
         let channels = [
@@ -272,6 +282,7 @@ impl Ball {
             channel(color.y, green),
             channel(color.z, blue),
         ];
+        let cycle = |part: usize| std::array::from_fn(|sample| channels[sample % 3][part]);
         Ball {
             center: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
@@ -283,9 +294,12 @@ impl Ball {
             inverse_radius: 1.0 / sphere.radius.value(),
             halfway,
             exponent,
-            // (1 − x)ⁿ ≤ e^−nx.
-            highlight: libm::exp(CUT / n),
-            channels,
+            highlight,
+            color: Coefficients {
+                ambient: cycle(0),
+                diffuse: cycle(1),
+                specular: cycle(2),
+            },
             errors,
             shadows,
         }

@@ -99,11 +99,23 @@ impl Case<'_> {
         let light = along(simd, &ball.light, m);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let hits = hits(simd, ball, &light, m, self.screen.place(first));
-            let (lower, upper) = lit(simd, ball, m, &hits);
+            let [deep, shallow] = ball
+                .errors
+                .map(|error| lit(simd, ball, m, &hits, error, true));
             let forms = self
                 .forms
                 .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
-            for lane in (0..S::f64s::LEN).filter(|lane| hits.known >> lane & 1 == 1) {
+            for lane in 0..S::f64s::LEN {
+                let q = hits.q.as_slice()[lane];
+                let squared = ball.squared_radius - m * m - q * q;
+                if squared < ball.least[1] {
+                    continue;
+                }
+                let [lower, upper] = if squared < ball.least[0] {
+                    shallow
+                } else {
+                    deep
+                };
                 let line = self.picture.eye_ray(first + lane as u32, row);
                 let hit = self.sphere.first_hit(&line).unwrap().unwrap();
                 let shading = &self.view.shading;
@@ -131,10 +143,12 @@ impl Case<'_> {
                     } else {
                         &mut found.dull
                     };
+                    let sample = 3 * lane + i;
+                    let (vector, place) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
                     channels.note_between(
                         truth,
-                        lower[i].as_slice()[lane],
-                        upper[i].as_slice()[lane],
+                        lower[vector].as_slice()[place],
+                        upper[vector].as_slice()[place],
                     );
                 }
             }

@@ -5,8 +5,9 @@ use std::ops::Range;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::ball::{Ball, Form, Halfway, Stretch};
+use super::ball::{Ball, Cycle, Form, Halfway, Stretch};
 use super::paint::{Paint, fill};
+use super::row::Columns;
 use super::shape::{MORE, Screen, U, places};
 use super::solids::ShadedBall;
 use crate::number::Bounded;
@@ -38,13 +39,18 @@ pub(super) struct Shading {
     pub(super) doubts: Vec<u32>,
 }
 
-/// The pixels of a run: where they are, and where they go.
+/// The pixels of a run, all of them known: where they are, and where they go.
 pub(super) struct Run<'r> {
     pub(super) screen: Screen,
     /// Y.
     pub(super) y: f64,
     /// The first column.
     pub(super) from: u32,
+    /// The columns in the innermost zone, and those that may have a highlight.
+    pub(super) deep: Columns,
+    pub(super) bright: Columns,
+    /// Whether all of them are certainly not turned away from the light, or it does not matter.
+    pub(super) is_facing: bool,
     pub(super) samples: &'r mut [f32],
     pub(super) decisions: Option<&'r mut [Decision]>,
     /// What pixels in shadow show.
@@ -56,6 +62,19 @@ pub(super) struct Run<'r> {
 // given to other functions are not.
 
 impl Run<'_> {
+    /// Writes some pixels, those that are in shadow bit by bit.
+    #[inline(always)]
+    pub(super) fn darken(&mut self, pixels: Range<usize>, in_shadow: u64) {
+        if in_shadow != 0 {
+            let samples = self.samples[3 * pixels.start..3 * pixels.end].chunks_exact_mut(3);
+            for (i, pixel) in samples.enumerate() {
+                if in_shadow >> i & 1 == 1 {
+                    pixel.copy_from_slice(&self.in_shadow.color());
+                }
+            }
+        }
+    }
+
     /// Writes the decisions of some pixels, bit by bit in shadow or not.
     #[inline(always)]
     pub(super) fn decide(&mut self, shaded: &ShadedBall<'_>, pixels: Range<usize>, in_shadow: u64) {
@@ -71,16 +90,13 @@ impl Run<'_> {
     }
 }
 
-/// As many pixels as f64 lanes: where they are hit, and bit by bit which are turned away from the light, and of which all this is known.
-pub(super) struct Hits<V, M> {
+/// As many pixels as f64 lanes: where they are hit.
+#[derive(Clone, Copy)]
+pub(super) struct Hits<V> {
     pub(super) q: V,
     pub(super) s: V,
     /// n·l.
     pub(super) light: V,
-    /// Which are in the innermost zone.
-    deep: M,
-    turned_away: u64,
-    pub(super) known: u64,
 }
 
 /// A linear form along a row.
@@ -96,67 +112,145 @@ pub(super) struct Along<V> {
 pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
     let ball = &shaded.ball;
     let width = S::f32s::LEN;
-    let half = S::f64s::LEN;
     let m = ball.off.at(run.y);
     let light = along(simd, &ball.light, m);
+    let asks = !run.is_facing || !run.shading.in_reach.is_empty();
     let count = run.samples.len() / 3;
-    let zero = S::f32s::splat(simd, 0.0);
-    let mut first = 0;
-    while first < count {
-        let x = run.screen.place(run.from + first as u32);
-        let low = hits(simd, ball, &light, m, x);
-        let high = hits(simd, ball, &light, m, x + 3.0 * half as f64);
-        let mut in_shadow = low.turned_away | high.turned_away << half;
-        let mut known = low.known | high.known << half;
+    let last = count.saturating_sub(width);
+    let (mut done, mut first) = (0, 0);
+    let mut hits = both_hits(simd, ball, &light, m, run, first);
+    while done < count {
+        // The last vector may lie on part of the one before it.
+        let next = (first + width).min(last);
+        // A root takes its time: that of the next vector is begun before this one waits for its own.
+        let [low, high] = hits;
+        if next > first {
+            hits = both_hits(simd, ball, &light, m, run, next);
+        }
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
-        if ball.shadows && in_shadow & all != all {
-            let casters = &shaded.casters;
-            let (low_dark, low_known) = shadowed(simd, ball, casters, run.shading, m, &low);
-            let (high_dark, high_known) = shadowed(simd, ball, casters, run.shading, m, &high);
-            in_shadow |= low_dark | high_dark << half;
-            known &= low_known | high_known << half;
+        let column = run.from + first as u32;
+        let end = column + here as u32;
+        let mut in_shadow = 0;
+        let mut unknown = 0;
+        if asks {
+            let (dark, known) = shadowed(simd, shaded, run, m, [&low, &high]);
+            in_shadow = dark;
+            unknown = !known;
         }
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
             fill(simd, samples, run.in_shadow);
         } else {
-            let (low_lower, low_upper) = lit(simd, ball, m, &low);
-            let (high_lower, high_upper) = lit(simd, ball, m, &high);
-            let dark = S::mask32s::from_bitmask(simd, in_shadow);
-            let mut channels = [zero; 3];
-            for i in 0..3 {
-                let lower = low_lower[i].narrow(high_lower[i]);
-                let upper = low_upper[i].narrow(high_upper[i]);
-                known &= lower.simd_eq(upper).to_bitmask() | in_shadow;
-                // + 0 turns −0 into +0.
-                let shadow = S::f32s::splat(simd, run.in_shadow.color()[i]);
-                channels[i] = dark.select(shadow, upper + zero);
+            let is_deep = column >= run.deep.0 && end <= run.deep.1;
+            let error = ball.errors[usize::from(!is_deep)];
+            let is_bright = column < run.bright.1 && end > run.bright.0;
+            let low = lit(simd, ball, m, &low, error, is_bright);
+            let high = lit(simd, ball, m, &high, error, is_bright);
+            let lower = narrow::<S>(low[0], high[0]);
+            // No error is −0, and so no sum with one.
+            let upper = narrow::<S>(low[1], high[1]);
+            put::<S>(samples, &upper);
+            let differ = [0, 1, 2].map(|i| !lower[i].simd_eq(upper[i]));
+            if (differ[0] | differ[1] | differ[2]).any_true() {
+                for (i, differ) in differ.iter().enumerate() {
+                    unknown |= pixels_of::<S>(i, differ.to_bitmask());
+                }
             }
-            let [red, green, blue] = &channels;
-            interleave(samples, red.as_slice(), green.as_slice(), blue.as_slice());
+            unknown &= !in_shadow;
+            run.darken(first..first + here, in_shadow);
         }
         run.decide(shaded, first..first + here, in_shadow);
-        let mut doubts = !known & all;
+        let mut doubts = unknown & all;
         while doubts != 0 {
-            run.shading
-                .doubts
-                .push(run.from + first as u32 + doubts.trailing_zeros());
+            // Where this vector has written over the one before, its own bounds count.
+            let doubt = column + doubts.trailing_zeros();
+            if doubt >= run.from + done as u32 || !run.shading.doubts.contains(&doubt) {
+                run.shading.doubts.push(doubt);
+            }
             doubts &= doubts - 1;
         }
-        first += here;
+        done = first + here;
+        first = next;
     }
 }
 
-/// Red, green and blue, pixel by pixel.
+/// The hits of as many pixels as there are f32 lanes.
 #[inline(always)]
-pub(super) fn interleave(samples: &mut [f32], red: &[f32], green: &[f32], blue: &[f32]) {
-    let channels = red.iter().zip(green).zip(blue);
-    for (pixel, ((&red, &green), &blue)) in samples.chunks_exact_mut(3).zip(channels) {
-        pixel[0] = red;
-        pixel[1] = green;
-        pixel[2] = blue;
+fn both_hits<S: Simd>(
+    simd: S,
+    ball: &Ball,
+    light: &Along<S::f64s>,
+    m: f64,
+    run: &Run<'_>,
+    first: usize,
+) -> [Hits<S::f64s>; 2] {
+    let x = run.screen.place(run.from + first as u32);
+    [
+        hits(simd, ball, light, m, x),
+        hits(simd, ball, light, m, x + 3.0 * S::f64s::LEN as f64),
+    ]
+}
+
+/// Of f64s that are three vectors each, f32s that are.
+#[inline(always)]
+pub(super) fn narrow<S: Simd>(low: [S::f64s; 3], high: [S::f64s; 3]) -> [S::f32s; 3] {
+    [
+        low[0].narrow(low[1]),
+        low[2].narrow(high[0]),
+        high[1].narrow(high[2]),
+    ]
+}
+
+/// The pixels, bit by bit, of some samples in one of three vectors.
+#[inline(always)]
+fn pixels_of<S: Simd>(vector: usize, mut samples: u64) -> u64 {
+    let mut pixels = 0;
+    while samples != 0 {
+        let sample = vector * S::f32s::LEN + samples.trailing_zeros() as usize;
+        pixels |= 1 << (sample / 3);
+        samples &= samples - 1;
     }
+    pixels
+}
+
+/// Writes as many samples as there are, or as three vectors hold.
+#[inline(always)]
+pub(super) fn put<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
+    let width = S::f32s::LEN;
+    if samples.len() == 3 * width {
+        for (i, vector) in vectors.iter().enumerate() {
+            vector.store_slice(&mut samples[i * width..(i + 1) * width]);
+        }
+    } else {
+        let mut all = [0.0; 3 * 16];
+        for (i, vector) in vectors.iter().enumerate() {
+            vector.store_slice(&mut all[i * width..(i + 1) * width]);
+        }
+        samples.copy_from_slice(&all[..samples.len()]);
+    }
+}
+
+/// What is one number a pixel, once for each of its three samples.
+#[inline(always)]
+pub(super) fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
+    let mut samples = [pixels; 3];
+    for (i, vector) in samples.iter_mut().enumerate() {
+        for (lane, sample) in vector.as_mut_slice().iter_mut().enumerate() {
+            *sample = pixels.as_slice()[(i * V::LEN + lane) / 3];
+        }
+    }
+    samples
+}
+
+#[inline(always)]
+fn of_cycle<S: Simd>(simd: S, cycle: &Cycle) -> [S::f64s; 3] {
+    let width = S::f64s::LEN;
+    [
+        S::f64s::from_slice(simd, &cycle[..width]),
+        S::f64s::from_slice(simd, &cycle[width..2 * width]),
+        S::f64s::from_slice(simd, &cycle[2 * width..3 * width]),
+    ]
 }
 
 #[inline(always)]
@@ -181,75 +275,68 @@ pub(super) fn hits<S: Simd>(
     light: &Along<S::f64s>,
     m: f64,
     x: f64,
-) -> Hits<S::f64s, S::mask64s> {
+) -> Hits<S::f64s> {
     let q = places::<S>(simd, 0) + x - ball.center;
-    let squared = S::f64s::splat(simd, ball.squared_radius - m * m) - q * q;
-    let deep = squared.simd_ge(ball.least[0]);
-    let known = squared.simd_ge(ball.least[1]);
-    let s = squared.sqrt();
+    let s = (S::f64s::splat(simd, ball.squared_radius - m * m) - q * q).sqrt();
     let light = value::<S>(light, q, s);
-    let turned_away = if ball.shadows {
-        light.simd_lt(-ball.light.error).to_bitmask()
-    } else {
-        0
-    };
-    Hits {
-        q,
-        s,
-        light,
-        deep,
-        turned_away,
-        known: known.to_bitmask(),
-    }
+    Hits { q, s, light }
 }
 
 /// Which pixels are in shadow, and of which it is known.
 #[inline(always)]
 fn shadowed<S: Simd>(
     simd: S,
-    ball: &Ball,
-    casters: &[Caster<'_>],
-    shading: &Shading,
+    shaded: &ShadedBall<'_>,
+    run: &Run<'_>,
     m: f64,
-    hits: &Hits<S::f64s, S::mask64s>,
+    hits: [&Hits<S::f64s>; 2],
 ) -> (u64, u64) {
-    let mut in_shadow = S::mask64s::from_bitmask(simd, hits.turned_away);
-    let mut settled = in_shadow | hits.light.simd_gt(ball.light.error);
-    for &caster in &shading.in_reach {
-        let (inside, outside) = behind(simd, &casters[caster], m, hits);
-        in_shadow |= inside;
-        settled &= inside | outside;
+    let mut dark = [S::mask64s::splat(simd, false); 2];
+    let mut known = [S::mask64s::splat(simd, true); 2];
+    for i in 0..2 {
+        if !run.is_facing {
+            let error = shaded.ball.light.error;
+            dark[i] = hits[i].light.simd_lt(-error);
+            known[i] = dark[i] | hits[i].light.simd_gt(error);
+        }
+        for &caster in &run.shading.in_reach {
+            let (inside, outside) = behind(simd, &shaded.casters[caster], m, hits[i]);
+            dark[i] |= inside;
+            known[i] &= inside | outside;
+        }
+        known[i] |= dark[i];
     }
-    (in_shadow.to_bitmask(), (in_shadow | settled).to_bitmask())
+    let bits =
+        |masks: [S::mask64s; 2]| masks[0].to_bitmask() | masks[1].to_bitmask() << S::f64s::LEN;
+    (bits(dark), bits(known))
 }
 
-/// Bounds on the samples of pixels in the light.
+/// Samples of pixels in the light as they lie in memory, from below and from above, by a bound on the errors apart from the highlight's.
 #[inline(always)]
 pub(super) fn lit<S: Simd>(
     simd: S,
     ball: &Ball,
     m: f64,
-    hits: &Hits<S::f64s, S::mask64s>,
-) -> ([S::f64s; 3], [S::f64s; 3]) {
+    hits: &Hits<S::f64s>,
+    error: f64,
+    is_bright: bool,
+) -> [[S::f64s; 3]; 2] {
     let zero = S::f64s::splat(simd, 0.0);
-    let light = hits.light.max(zero);
+    let light = spread(hits.light.max(zero));
+    let ambient = of_cycle(simd, &ball.color.ambient);
+    let diffuse = of_cycle(simd, &ball.color.diffuse);
     let mut samples = [zero; 3];
-    for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
-        *sample = light * channel.diffuse + channel.ambient;
+    let mut errors = [S::f64s::splat(simd, error); 3];
+    for i in 0..3 {
+        samples[i] = light[i] * diffuse[i] + ambient[i];
     }
-    let [deep, shallow] = ball.errors;
-    let error = S::f64s::splat(simd, shallow);
-    let error = hits.deep.select(S::f64s::splat(simd, deep), error);
-    let mut errors = [error; 3];
-    if let Some(halfway) = &ball.halfway {
-        let x = value::<S>(&along(simd, &halfway.form, m), hits.q, hits.s);
-        if x.simd_gt(ball.highlight).any_true() {
-            let (power, power_error) = highlight(simd, ball, halfway, m, hits);
-            for i in 0..3 {
-                let specular = ball.channels[i].specular;
-                samples[i] += power * specular;
-                errors[i] += power_error * specular.abs();
-            }
+    if let Some(halfway) = ball.halfway.as_ref().filter(|_| is_bright) {
+        let (power, power_error) = highlight(simd, ball, halfway, m, hits);
+        let (power, power_error) = (spread(power), spread(power_error));
+        let specular = of_cycle(simd, &ball.color.specular);
+        for i in 0..3 {
+            samples[i] += power[i] * specular[i];
+            errors[i] += power_error[i] * specular[i].abs();
         }
     }
     let (mut lower, mut upper) = (samples, samples);
@@ -257,7 +344,7 @@ pub(super) fn lit<S: Simd>(
         lower[i] -= errors[i];
         upper[i] += errors[i];
     }
-    (lower, upper)
+    [lower, upper]
 }
 
 /// (n·h)ⁿ, and a bound on its error.
@@ -267,7 +354,7 @@ fn highlight<S: Simd>(
     ball: &Ball,
     halfway: &Halfway,
     m: f64,
-    hits: &Hits<S::f64s, S::mask64s>,
+    hits: &Hits<S::f64s>,
 ) -> (S::f64s, S::f64s) {
     let [across, off, out] = halfway.at;
     let (across, off, out) = (hits.q - across, m - off, hits.s - out);
@@ -305,7 +392,7 @@ fn behind<S: Simd>(
     simd: S,
     caster: &Caster<'_>,
     m: f64,
-    hits: &Hits<S::f64s, S::mask64s>,
+    hits: &Hits<S::f64s>,
 ) -> (S::mask64s, S::mask64s) {
     let &Hits { q, s, .. } = hits;
     match caster {

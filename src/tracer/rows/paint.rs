@@ -10,8 +10,8 @@ use crate::tracer::decision::Decision;
 /// What many pixels show, and their colour as it lies in memory: the same pixel again and again.
 pub(super) struct Paint {
     pub(super) decision: Decision,
-    /// Three vectors hold a whole number of pixels, of any width up to a third of this.
-    samples: [f32; 3 * 16],
+    /// As many as a vector of any width holds, from any of the three channels on.
+    samples: [f32; 16 + 2],
 }
 
 impl Paint {
@@ -67,12 +67,12 @@ impl std::ops::Index<PaintNumber> for AllPaints<'_> {
     }
 }
 
-/// Fills samples with a colour.
+/// Fills samples with a colour, from its first channel on.
 #[inline(always)]
 pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
-    if samples.len() >= 3 * S::f32s::LEN {
+    if samples.len() >= S::f32s::LEN {
         fill_by::<S, S::f32s>(simd, samples, paint);
-    } else if samples.len() >= 3 * 4 {
+    } else if samples.len() >= 4 {
         fill_by::<S, f32x4<S>>(simd, samples, paint);
     } else {
         for (sample, color) in samples.iter_mut().zip(&paint.samples) {
@@ -81,27 +81,35 @@ pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
     }
 }
 
-/// Fills no fewer samples than three vectors hold.
+/// Fills no fewer samples than a vector holds.
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
-    let first = V::from_slice(simd, &paint.samples[..width]);
-    let second = V::from_slice(simd, &paint.samples[width..2 * width]);
-    let third = V::from_slice(simd, &paint.samples[2 * width..3 * width]);
-    // The last block may lie on part of the one before it.
-    let last = samples.len() - 3 * width;
-    for block in samples.chunks_exact_mut(3 * width) {
-        put(block, first, second, third);
+    // The first and the last vector lie on part of the others, of which none crosses from one cache line into the next: that takes
+    // twice as long.
+    let last = samples.len() - width;
+    let first = samples.as_ptr().align_offset(4 * width).min(last);
+    V::from_slice(simd, &paint.samples[..width]).store_slice(&mut samples[..width]);
+    let channel = last % 3;
+    let vector = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    vector.store_slice(&mut samples[last..]);
+    let channel = first % 3;
+    let one = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    let channel = (first + width) % 3;
+    let two = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    let channel = (first + 2 * width) % 3;
+    let three = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    let mut blocks = samples[first..].chunks_exact_mut(3 * width);
+    for block in &mut blocks {
+        one.store_slice(&mut block[..width]);
+        two.store_slice(&mut block[width..2 * width]);
+        three.store_slice(&mut block[2 * width..]);
     }
-    put(&mut samples[last..], first, second, third);
-}
-
-/// By value, so that the vectors stay in registers.
-#[inline(always)]
-fn put<S: Simd, V: SimdFloat<S, Element = f32>>(block: &mut [f32], first: V, second: V, third: V) {
-    let (one, rest) = block.split_at_mut(V::LEN);
-    let (two, three) = rest.split_at_mut(V::LEN);
-    first.store_slice(one);
-    second.store_slice(two);
-    third.store_slice(three);
+    let rest = blocks.into_remainder();
+    if rest.len() >= width {
+        one.store_slice(&mut rest[..width]);
+    }
+    if rest.len() >= 2 * width {
+        two.store_slice(&mut rest[width..2 * width]);
+    }
 }

@@ -3,8 +3,8 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdElement};
 
-use super::ball::Form;
-use super::lanes::{Caster, Run, interleave};
+use super::ball::{Ball, Coefficients, Cycle, Form};
+use super::lanes::{Caster, Run, narrow, put, spread};
 use super::solids::ShadedBall;
 
 /// A float of a kernel.
@@ -29,70 +29,81 @@ impl Lane for f64 {
 /// Shades a run of pixels that see a sphere, in f32.
 #[inline(always)]
 pub(super) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
+    let color = color::<S, S::f32s>(simd, &shaded.ball);
     let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let (channels, in_shadow) = lit::<S, S::f32s>(simd, shaded, &run.shading.in_reach, m, x);
-        put(
-            simd,
-            shaded,
-            run,
-            &mut first,
-            channels,
-            in_shadow.to_bitmask(),
-        );
+        let (samples, in_shadow) = lit::<S, S::f32s>(simd, shaded, run, &color, m, x);
+        write::<S>(shaded, run, &mut first, samples, in_shadow.to_bitmask());
     }
 }
 
 /// The same in f64, rounded once at the end.
 #[inline(always)]
 pub(super) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>) {
+    let color = color::<S, S::f64s>(simd, &shaded.ball);
     let half = S::f64s::LEN;
     let m = shaded.ball.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
         let x = run.screen.place(run.from + first as u32);
-        let (low, low_shadow) = lit::<S, S::f64s>(simd, shaded, &run.shading.in_reach, m, x);
-        let (high, high_shadow) = lit::<S, S::f64s>(
-            simd,
-            shaded,
-            &run.shading.in_reach,
-            m,
-            x + 3.0 * half as f64,
-        );
-        let channels = [
-            low[0].narrow(high[0]),
-            low[1].narrow(high[1]),
-            low[2].narrow(high[2]),
-        ];
+        let (low, low_shadow) = lit::<S, S::f64s>(simd, shaded, run, &color, m, x);
+        let next = x + 3.0 * half as f64;
+        let (high, high_shadow) = lit::<S, S::f64s>(simd, shaded, run, &color, m, next);
         let in_shadow = low_shadow.to_bitmask() | high_shadow.to_bitmask() << half;
-        put(simd, shaded, run, &mut first, channels, in_shadow);
+        let samples = narrow::<S>(low, high);
+        write::<S>(shaded, run, &mut first, samples, in_shadow);
     }
 }
 
 /// Writes one vector of pixels.
 #[inline(always)]
-fn put<S: Simd>(
-    simd: S,
+fn write<S: Simd>(
     shaded: &ShadedBall<'_>,
     run: &mut Run<'_>,
     first: &mut usize,
-    mut channels: [S::f32s; 3],
+    mut vectors: [S::f32s; 3],
     in_shadow: u64,
 ) {
     let here = S::f32s::LEN.min(run.samples.len() / 3 - *first);
-    let dark = S::mask32s::from_bitmask(simd, in_shadow);
-    for (channel, &shadow) in channels.iter_mut().zip(&run.in_shadow.color()) {
-        *channel = dark.select(S::f32s::splat(simd, shadow), *channel + 0.0);
+    for vector in &mut vectors {
+        // −0 becomes +0.
+        *vector += 0.0;
     }
     let samples = &mut run.samples[3 * *first..3 * (*first + here)];
-    let [red, green, blue] = &channels;
-    interleave(samples, red.as_slice(), green.as_slice(), blue.as_slice());
+    put::<S>(samples, &vectors);
+    run.darken(*first..*first + here, in_shadow);
     run.decide(shaded, *first..*first + here, in_shadow);
     *first += here;
+}
+
+/// What colours are made of, as samples lie in memory.
+#[inline(always)]
+fn color<S: Simd, V: SimdFloat<S, Element: Lane>>(simd: S, ball: &Ball) -> Coefficients<[V; 3]> {
+    let Coefficients {
+        ambient,
+        diffuse,
+        specular,
+    } = &ball.color;
+    Coefficients {
+        ambient: cycle(simd, ambient),
+        diffuse: cycle(simd, diffuse),
+        specular: cycle(simd, specular),
+    }
+}
+
+#[inline(always)]
+fn cycle<S: Simd, V: SimdFloat<S, Element: Lane>>(simd: S, cycle: &Cycle) -> [V; 3] {
+    let mut vectors = [V::splat(simd, V::Element::of(0.0)); 3];
+    for (i, vector) in vectors.iter_mut().enumerate() {
+        for (lane, sample) in vector.as_mut_slice().iter_mut().enumerate() {
+            *sample = V::Element::of(cycle[(i * V::LEN + lane) % 3]);
+        }
+    }
+    vectors
 }
 
 /// The samples of neighbouring pixels, and who is in shadow.
@@ -100,7 +111,8 @@ fn put<S: Simd>(
 fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     simd: S,
     shaded: &ShadedBall<'_>,
-    in_reach: &[usize],
+    run: &Run<'_>,
+    color: &Coefficients<[V; 3]>,
     m: f64,
     x: f64,
 ) -> ([V; 3], V::Mask) {
@@ -114,18 +126,18 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     }
     let squared = V::splat(simd, V::Element::of(ball.squared_radius - m * m)) - q * q;
     let s = squared.max(zero).sqrt();
-    let mut light = value::<S, V>(simd, &ball.light, m, q, s);
+    let light = value::<S, V>(simd, &ball.light, m, q, s);
     let mut in_shadow = V::Mask::splat(simd, false);
-    if ball.shadows {
+    if !run.is_facing {
         in_shadow = light.simd_le(zero);
-        for &caster in in_reach {
-            in_shadow |= shadowed::<S, V>(simd, &shaded.casters[caster], m, q, s);
-        }
     }
-    light = light.max(zero);
+    for &caster in &run.shading.in_reach {
+        in_shadow |= shadowed::<S, V>(simd, &shaded.casters[caster], m, q, s);
+    }
+    let light = spread(light.max(zero));
     let mut samples = [zero; 3];
-    for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
-        *sample = light * V::Element::of(channel.diffuse) + V::Element::of(channel.ambient);
+    for i in 0..3 {
+        samples[i] = light[i] * color.diffuse[i] + color.ambient[i];
     }
     if let Some(halfway) = &ball.halfway {
         let h = &halfway.form;
@@ -140,9 +152,9 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
             let out = s * V::Element::of(inverse) - V::Element::of(h_out / inverse);
             let squared = across * across + out * out + V::Element::of(off * off);
             let power = one_minus_to_the(one, squared * V::Element::of(0.5), ball.exponent);
-            let power = bright.select(power, zero);
-            for (sample, channel) in samples.iter_mut().zip(&ball.channels) {
-                *sample += power * V::Element::of(channel.specular);
+            let power = spread(bright.select(power, zero));
+            for i in 0..3 {
+                samples[i] += power[i] * color.specular[i];
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 
+use super::chord::Chord;
 use super::lanes::{self, Run, Shading};
 use super::paint::{self, Paint};
 use super::shape::Screen;
@@ -31,6 +32,8 @@ impl Memory {
 /// A row that is being written.
 pub(super) struct Row<'r> {
     pub(super) level: Level,
+    pub(super) precision: Precision,
+    pub(super) screen: Screen,
     pub(super) number: u32,
     /// Y.
     pub(super) y: f64,
@@ -43,6 +46,12 @@ pub(super) struct Row<'r> {
 
 /// Columns, from the first to before the last.
 pub(super) type Columns = (u32, u32);
+
+/// The columns of `columns` that are among others: none, somewhere among them, if there are none.
+fn both(columns: Columns, others: Columns) -> Columns {
+    let from = others.0.clamp(columns.0, columns.1);
+    (from, others.1.clamp(from, columns.1))
+}
 
 impl Row<'_> {
     /// One colour in all columns.
@@ -86,30 +95,78 @@ impl Row<'_> {
         &mut self,
         columns: Columns,
         shaded: &ShadedBall<'_>,
+        chord: &Chord,
         in_shadow: &Paint,
-        precision: Precision,
-        screen: Screen,
         shading: &mut Shading,
     ) {
+        let known = both(columns, chord.known);
+        shading.doubts.extend(columns.0..known.0);
+        shading.doubts.extend(known.1..columns.1);
+        let facing = match chord.facing {
+            _ if !shaded.ball.shadows => Some((known, true)),
+            facing => facing,
+        };
+        let mut shade = |row: &mut Self, columns, is_facing| {
+            row.shade_known(columns, shaded, (chord, is_facing), in_shadow, shading);
+        };
+        match facing {
+            None => shade(self, known, false),
+            Some((inside, inside_faces)) => {
+                let inside = both(known, inside);
+                let parts = [
+                    ((known.0, inside.0), !inside_faces),
+                    (inside, inside_faces),
+                    ((inside.1, known.1), !inside_faces),
+                ];
+                for (columns, faces) in parts {
+                    match faces {
+                        _ if columns.0 == columns.1 => {}
+                        true => shade(self, columns, true),
+                        false => self.fill(columns, in_shadow),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Columns of a sphere in which all is known that f64 has to know to shade it.
+    fn shade_known(
+        &mut self,
+        columns: Columns,
+        shaded: &ShadedBall<'_>,
+        (chord, is_facing): (&Chord, bool),
+        in_shadow: &Paint,
+        shading: &mut Shading,
+    ) {
+        if columns.0 == columns.1 {
+            return;
+        }
         self.mark_written();
-        let ball = &shaded.ball;
-        let ends = (screen.place(columns.0), screen.place(columns.1 - 1));
-        let stretch = ball.stretch(self.y, ends);
-        let casters = shaded.casters.iter().enumerate();
-        let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
         shading.in_reach.clear();
-        shading.in_reach.extend(near.map(|(number, _)| number));
+        if !shaded.casters.is_empty() {
+            let ends = (
+                self.screen.place(columns.0),
+                self.screen.place(columns.1 - 1),
+            );
+            let stretch = shaded.ball.stretch(self.y, ends);
+            let casters = shaded.casters.iter().enumerate();
+            let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+            shading.in_reach.extend(near.map(|(number, _)| number));
+        }
         let range = columns.0 as usize..columns.1 as usize;
         let mut run = Run {
-            screen,
+            screen: self.screen,
             y: self.y,
             from: columns.0,
+            deep: chord.deep,
+            bright: chord.bright,
+            is_facing,
             samples: &mut self.samples[3 * range.start..3 * range.end],
             decisions: self.decisions.as_mut().map(|all| &mut all[range]),
             in_shadow,
             shading,
         };
-        dispatch!(self.level, simd => match precision {
+        dispatch!(self.level, simd => match self.precision {
             Precision::Bounded => lanes::shade(simd, shaded, &mut run),
             Precision::Double => plain::shade_in_double(simd, shaded, &mut run),
             Precision::Single => plain::shade_in_single(simd, shaded, &mut run),

@@ -276,6 +276,12 @@ impl Off {
     pub(super) fn at(self, y: f64) -> f64 {
         self.slope * (y - self.zero)
     }
+
+    /// The same of as many rows as there are lanes.
+    #[inline(always)]
+    pub(super) fn of_rows<S: Simd>(self, y: S::f64s) -> S::f64s {
+        (y - self.zero) * self.slope
+    }
 }
 
 impl Ellipse {
@@ -387,7 +393,7 @@ impl Ellipse {
         for first in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, first) + y;
             let zero = S::f64s::splat(simd, 0.0);
-            let m = (y - self.off.zero) * self.off.slope;
+            let m = self.off.of_rows::<S>(y);
             let squared = -(m * m) + self.squared_radius;
             let (most, least) = (squared + self.chord_error, squared - self.chord_error);
             let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
@@ -507,7 +513,7 @@ pub(super) fn places<S: Simd>(simd: S, first: usize) -> S::f64s {
 
 /// Places on the screen, in columns.
 #[inline(always)]
-fn in_columns<S: Simd>(screen: Screen, x: S::f64s) -> S::f64s {
+pub(super) fn in_columns<S: Simd>(screen: Screen, x: S::f64s) -> S::f64s {
     x * (1.0 / 3.0) + screen.half
 }
 
@@ -525,7 +531,7 @@ fn put_count<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
 
 /// Whole numbers, brought into the row.
 #[inline(always)]
-fn put_columns<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
+pub(super) fn put_columns<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
     let columns_of_row = places.max(0.0).min(f64::from(screen.size));
     // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper half.
     let shifted = columns_of_row + f64::from_bits((1023 + 52) << 52);

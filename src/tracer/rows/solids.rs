@@ -49,6 +49,8 @@ pub(super) enum Body<'f> {
 
 /// A sphere that is shaded.
 pub(super) struct ShadedBall<'f> {
+    /// Its number among those of the frame.
+    pub(super) number: usize,
     pub(super) ball: Ball,
     /// What may throw a shadow on it.
     pub(super) casters: &'f [Caster<'f>],
@@ -163,7 +165,9 @@ impl<'f> Solids<'f> {
                     } else {
                         &[]
                     };
+                    parts.balls += 1;
                     Body::Ball(arena.alloc(ShadedBall {
+                        number: parts.balls - 1,
                         ball,
                         casters,
                         lit: decision(index, None, false),

@@ -1,0 +1,289 @@
+//! A sphere in neighbouring rows: which of its pixels can be shaded at once, and which need not be asked where they face.
+//!
+//! Along a row s = √(R² − m² − q²) is concave in q. So a [`Form`] is concave where s is multiplied with what is not negative, and
+//! convex where it is multiplied with what is not positive; its negative is concave then. A concave function is positive between
+//! any two columns in which it is positive. Where it is negative in one column and positive in one to the right of it, it is
+//! negative in all columns to the left of the first: were it not in one of them, it would be no less than the least of that and the
+//! second, between them. And where it is less in a column than in the next, it is less still in all columns before.
+//!
+//! So the columns where it changes sign may be guessed, by the roots of a quadratic equation. The form is asked in few columns beside
+//! these, with its bound as in `ball.rs`, and what they tell of all others is certain. Where they do not, the row is left unsettled.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::ball::{Ball, Form};
+use super::row::Columns;
+use super::shape::{Screen, U, in_columns, places, put_columns};
+use super::solids::ShadedBall;
+use super::span::ROWS;
+
+/// Rounding moves a place by less than so many columns; where that is not so, what is guessed with it is found to be wrong.
+const NUDGE: f64 = 1.0 / (1 << 20) as f64;
+
+/// In each of some rows, the columns of a run.
+type Runs = [[u32; ROWS]; 2];
+
+/// What is known of a sphere's pixels in some rows.
+#[derive(Clone)]
+pub(super) struct Chords {
+    /// Those that are hit deep enough inside the outline for f64 to say anything.
+    known: Runs,
+    /// Those in the innermost zone.
+    deep: Runs,
+    facing: Arcs,
+    /// Those outside of which there is certainly no highlight.
+    bright: Runs,
+}
+
+/// The columns in which a form that is concave or convex is positive.
+#[derive(Clone)]
+struct Arcs {
+    /// Where it is positive, if it is concave; where it is negative, if it is convex.
+    inside: Runs,
+    is_concave: bool,
+    /// Bit by bit, the rows of which this is certain.
+    settled: u64,
+}
+
+/// What is known of a sphere's pixels in a row.
+#[derive(Clone, Copy)]
+pub(super) struct Chord {
+    pub(super) known: Columns,
+    pub(super) deep: Columns,
+    pub(super) bright: Columns,
+    /// The columns in which it faces the light, or those in which it does not; `None` where each is to be asked.
+    pub(super) facing: Option<(Columns, bool)>,
+}
+
+/// What is known of spheres in the rows that are traced now, found when it is first asked for.
+#[derive(Default)]
+pub(super) struct AllChords {
+    chords: Vec<Chords>,
+    /// For each, the first of the rows that it is of.
+    first: Vec<Option<u32>>,
+}
+
+impl AllChords {
+    /// Prepares for so many spheres of a frame.
+    pub(super) fn begin(&mut self, count: usize) {
+        self.first.clear();
+        self.first.resize(count, None);
+        if self.chords.len() < count {
+            self.chords.resize(count, Chords::NONE);
+        }
+    }
+
+    /// A sphere in a row.
+    pub(super) fn of(
+        &mut self,
+        shaded: &ShadedBall<'_>,
+        row: u32,
+        level: Level,
+        screen: Screen,
+    ) -> Chord {
+        let (number, ball) = (shaded.number, &shaded.ball);
+        let within = row % ROWS as u32;
+        let first = row - within;
+        if self.first[number] != Some(first) {
+            self.first[number] = Some(first);
+            self.chords[number] = dispatch!(level, simd => Chords::new(simd, ball, first, screen));
+        }
+        self.chords[number].row(within as usize)
+    }
+}
+
+impl Chords {
+    const NONE: Chords = Chords {
+        known: [[0; ROWS]; 2],
+        deep: [[0; ROWS]; 2],
+        facing: Arcs {
+            inside: [[0; ROWS]; 2],
+            is_concave: true,
+            settled: 0,
+        },
+        bright: [[0; ROWS]; 2],
+    };
+
+    fn row(&self, row: usize) -> Chord {
+        let of = |runs: &Runs| (runs[0][row], runs[1][row]);
+        let Arcs {
+            inside,
+            is_concave,
+            settled,
+        } = &self.facing;
+        Chord {
+            known: of(&self.known),
+            deep: of(&self.deep),
+            bright: of(&self.bright),
+            facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
+        }
+    }
+
+    /// Of the rows from `first` on.
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, ball: &Ball, first: u32, screen: Screen) -> Chords {
+        let mut chords = Chords::NONE;
+        chords.facing.is_concave = ball.light.is_concave == Some(true);
+        for lane in (0..ROWS).step_by(S::f64s::LEN) {
+            let y = places::<S>(simd, lane) + screen.place(first);
+            let m = ball.off.of_rows::<S>(y);
+            let rows = InRows {
+                simd,
+                ball,
+                screen,
+                m,
+                squared: -(m * m) + ball.squared_radius,
+            };
+            let [least_deep, least] = ball.least;
+            let (known, deep) = (rows.chord(least), rows.chord(least_deep));
+            put::<S>(screen, known, &mut chords.known, lane);
+            put::<S>(screen, deep, &mut chords.deep, lane);
+            if ball.shadows {
+                let (inside, settled) = rows.arc(&ball.light, 0.0, known);
+                put::<S>(screen, inside, &mut chords.facing.inside, lane);
+                chords.facing.settled |= settled.to_bitmask() << lane;
+            }
+            if let Some(halfway) = &ball.halfway {
+                // |n − h| is no less than the part of it along m.
+                let is_near = (m - halfway.at[1]).abs().simd_le(halfway.reach);
+                if is_near.any_true() {
+                    let (inside, settled) = rows.arc(&halfway.form, ball.highlight, known);
+                    let mut bright = known;
+                    if halfway.form.is_concave == Some(true) {
+                        bright = select::<S>(settled, inside, known);
+                    }
+                    let none = [S::f64s::splat(simd, 0.0); 2];
+                    let bright = select::<S>(is_near, bright, none);
+                    put::<S>(screen, bright, &mut chords.bright, lane);
+                }
+            }
+        }
+        chords
+    }
+}
+
+/// A sphere in as many rows as there are lanes.
+struct InRows<'b, S: Simd> {
+    simd: S,
+    ball: &'b Ball,
+    screen: Screen,
+    m: S::f64s,
+    /// R² − m².
+    squared: S::f64s,
+}
+
+/// Where runs begin and end: whole numbers of columns.
+type Ends<V> = [V; 2];
+
+#[inline(always)]
+fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> Ends<S::f64s> {
+    [mask.select(yes[0], no[0]), mask.select(yes[1], no[1])]
+}
+
+#[inline(always)]
+fn put<S: Simd>(screen: Screen, ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
+    put_columns::<S>(screen, ends[0], &mut runs[0][lane..]);
+    put_columns::<S>(screen, ends[1], &mut runs[1][lane..]);
+}
+
+// No closures below: see `lanes.rs`.
+
+impl<S: Simd> InRows<'_, S> {
+    /// q in a column of each row.
+    #[inline(always)]
+    fn across(&self, column: S::f64s) -> S::f64s {
+        (column - self.screen.half) * 3.0 - self.ball.center
+    }
+
+    /// The columns in which s² is at least `least`, but for some at their ends.
+    #[inline(always)]
+    fn chord(&self, least: f64) -> Ends<S::f64s> {
+        let (zero, size) = (S::f64s::splat(self.simd, 0.0), f64::from(self.screen.size));
+        let half = (self.squared - least).max(zero).sqrt();
+        let middle = S::f64s::splat(self.simd, self.ball.center);
+        let from = (in_columns::<S>(self.screen, middle - half) + NUDGE).ceil();
+        let to = (in_columns::<S>(self.screen, middle + half) - NUDGE).floor() + 1.0;
+        let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
+        // The farther from the middle the less, also as f64 computes it: what is so at both ends is so between them.
+        let (a, b) = (self.across(from), self.across(to - 1.0));
+        let is_deep = (self.squared - a * a).simd_ge(least) & (self.squared - b * b).simd_ge(least);
+        let is_chord = is_deep & from.simd_lt(to);
+        [is_chord.select(from, zero), is_chord.select(to, zero)]
+    }
+
+    /// How much a form is more than `level` in a column of each row, or less if it is convex.
+    #[inline(always)]
+    fn above(&self, form: &Form, level: f64, sign: f64, column: S::f64s) -> S::f64s {
+        let q = self.across(column);
+        let s = (self.squared - q * q).sqrt();
+        (self.m * form.off + form.constant + q * form.across + s * form.out - level) * sign
+    }
+
+    /// Of the columns `known` those in which a form is above `level`, if it is concave, or below, if it is convex; and in which rows
+    /// it certainly is there, and not in the others.
+    #[inline(always)]
+    fn arc(&self, form: &Form, level: f64, known: Ends<S::f64s>) -> (Ends<S::f64s>, S::mask64s) {
+        let none = S::mask64s::splat(self.simd, false);
+        let sign = match form.is_concave {
+            Some(true) => 1.0,
+            Some(false) => -1.0,
+            None => return (known, none),
+        };
+        // The form is F = r + a q + o s, with o ≥ 0, and 0 at (r + a q)² = o² s².
+        let (a, o) = (form.across * sign, form.out * sign);
+        let speed = a * a + o * o;
+        let inverse = 1.0 / speed;
+        if !inverse.is_finite() {
+            return (known, none);
+        }
+        let zero = S::f64s::splat(self.simd, 0.0);
+        let one = S::f64s::splat(self.simd, 1.0);
+        let [first, end] = known;
+        let last = end - one;
+        let r = (self.m * form.off + form.constant - level) * sign;
+        let discriminant = self.squared * speed - r * r;
+        let has_roots = discriminant.simd_ge(zero);
+        let root = discriminant.max(zero).sqrt() * o;
+        let middle = -(r * a);
+        let (low, high) = ((middle - root) * inverse, (middle + root) * inverse);
+        // Where r + a q > 0, F is 0 with the other sign of s, and positive at the end of the chord.
+        let from_end = !has_roots | (low * a + r).simd_gt(zero);
+        let to_end = !has_roots | (high * a + r).simd_gt(zero);
+        let (low, high) = (low + self.ball.center, high + self.ball.center);
+        let from = in_columns::<S>(self.screen, low).ceil().max(first);
+        let to = (in_columns::<S>(self.screen, high).floor() + one).min(end);
+        let from = from_end.select(first, from);
+        let to = to_end.select(end, to);
+        let is_none = (!has_roots & r.simd_lt(zero)) | from.simd_ge(to);
+        // It is most at q/s = a/o.
+        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.ball.center;
+        let top = in_columns::<S>(self.screen, top).floor();
+        let top = top.min(last - one).max(first);
+        // The last column before those, the first and the last of them, and the next; or of none, two columns on either side of the top.
+        let columns = [
+            is_none.select(top - one, from - one),
+            is_none.select(top, from),
+            is_none.select(top + one, to - one),
+            is_none.select(top + one + one, to),
+        ];
+        let mut values = [zero; 4];
+        for (value, column) in values.iter_mut().zip(columns) {
+            let column = column.max(first).min(last);
+            *value = self.above(form, level, sign, column);
+        }
+        let [before, begin, finish, after] = values;
+        let error = form.error + 4.0 * U * level.abs();
+        let is_out = before.simd_lt(-error) & after.simd_lt(-error);
+        let is_in = begin.simd_gt(error) & finish.simd_gt(error);
+        let begins = from.simd_le(first) | before.simd_lt(-error);
+        let ends = to.simd_ge(end) | after.simd_lt(-error);
+        let rises = (top - one).simd_le(first) | (begin - before).simd_gt(4.0 * error);
+        let falls = (top + one + one).simd_ge(last) | (finish - after).simd_gt(4.0 * error);
+        let none_in = is_out & begin.simd_lt(-error) & finish.simd_lt(-error) & rises & falls;
+        let settled = (is_none & none_in) | (!is_none & is_in & begins & ends) | first.simd_ge(end);
+        let from = is_none.select(first, from);
+        let to = is_none.select(first, to);
+        ([from, to], settled)
+    }
+}
