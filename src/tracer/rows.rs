@@ -190,7 +190,8 @@ impl<'f, P: Lines> Rows<'f, P> {
 
     /// What tracing rows of this frame needs.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
-        scratch.sweep.begin(&self.borders);
+        scratch.sweep.begin(&self.borders, self.screen);
+        scratch.plan.clear();
         scratch.shade.chords.begin(self.balls);
     }
 
@@ -227,30 +228,29 @@ impl<'f, P: Lines> Rows<'f, P> {
             }
             return row.finish();
         }
-        let (sweep, plan) = (&mut scratch.sweep, &mut scratch.plan);
-        if sweep.enter(number, &self.borders, self.level, screen) {
+        let Scratch {
+            sweep,
+            plan,
+            settled,
+            shade,
+        } = scratch;
+        if plan.is_full() {
             plan.clear();
-            for crossing in 0..=sweep.len() {
-                if sweep.has_columns_before(crossing) {
-                    let seen = self.seen(&sweep.column, plan);
-                    plan.add(crossing, seen);
-                }
-                if crossing < sweep.len() {
-                    sweep.pass(crossing, &self.borders);
-                }
-            }
+            sweep.forget();
         }
+        let look = |column: &Column| self.seen(column, plan);
+        sweep.enter(number, &self.borders, self.level, screen, look);
         let mut from = 0;
-        for &(crossing, seen) in plan.pieces() {
-            let to = sweep.place(crossing).unwrap_or(screen.size);
+        for part in 0..sweep.len() {
+            let (to, seen) = sweep.part(part, number);
             match seen {
-                Seen::Only(shows) => {
-                    self.write(&mut row, (from, to), shows, &mut scratch.shade);
-                }
+                // A part that other rows have.
+                _ if from == to => {}
+                Seen::Only(shows) => self.write(&mut row, (from, to), shows, shade),
                 Seen::First(_) => {
-                    self.settle(plan, seen, row.y, (from, to), &mut scratch.settled);
-                    for (columns, shows) in scratch.settled.drain(..) {
-                        self.write(&mut row, columns, shows, &mut scratch.shade);
+                    self.settle(plan, seen, row.y, (from, to), settled);
+                    for (columns, shows) in settled.drain(..) {
+                        self.write(&mut row, columns, shows, shade);
                     }
                 }
             }

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::ball::{Ball, Form};
-use super::lanes::{along, hits, lit, value};
+use super::lanes::{along, ambient, hits, lit, value};
 use super::shape::{Ellipse, Screen};
 use crate::number::{Bounded, DoubleDouble, Real};
 use crate::scene::Scene;
@@ -101,7 +101,7 @@ impl Case<'_> {
             let hits = hits(simd, ball, &light, m, self.screen.place(first));
             let [deep, shallow] = ball
                 .errors
-                .map(|error| lit(simd, ball, m, &hits, error, true));
+                .map(|error| lit(simd, ball, m, &hits, &ambient(simd, ball, error), true));
             let forms = self
                 .forms
                 .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));

@@ -137,11 +137,11 @@ impl Chords {
             };
             let [least_deep, least] = ball.least;
             let (known, deep) = (rows.chord(least), rows.chord(least_deep));
-            put::<S>(screen, known, &mut chords.known, lane);
-            put::<S>(screen, deep, &mut chords.deep, lane);
+            put::<S>(known, &mut chords.known, lane);
+            put::<S>(deep, &mut chords.deep, lane);
             if ball.shadows {
                 let (inside, settled) = rows.arc(&ball.light, 0.0, known);
-                put::<S>(screen, inside, &mut chords.facing.inside, lane);
+                put::<S>(inside, &mut chords.facing.inside, lane);
                 chords.facing.settled |= settled.to_bitmask() << lane;
             }
             if let Some(halfway) = &ball.halfway {
@@ -155,7 +155,7 @@ impl Chords {
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
                     let bright = select::<S>(is_near, bright, none);
-                    put::<S>(screen, bright, &mut chords.bright, lane);
+                    put::<S>(bright, &mut chords.bright, lane);
                 }
             }
         }
@@ -182,9 +182,9 @@ fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> E
 }
 
 #[inline(always)]
-fn put<S: Simd>(screen: Screen, ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
-    put_columns::<S>(screen, ends[0], &mut runs[0][lane..]);
-    put_columns::<S>(screen, ends[1], &mut runs[1][lane..]);
+fn put<S: Simd>(ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
+    put_columns::<S>(ends[0], &mut runs[0][lane..]);
+    put_columns::<S>(ends[1], &mut runs[1][lane..]);
 }
 
 // No closures below: see `lanes.rs`.

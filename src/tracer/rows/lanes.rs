@@ -58,6 +58,9 @@ pub(super) struct Run<'r> {
     pub(super) shading: &'r mut Shading,
 }
 
+// Where the processor can multiply and add at once, `mul_add` rounds once instead of twice. So its errors are within the same bounds, and
+// what is certain of a sample or a shadow is the same with and without; plain code, which is not certain, does not use it.
+//
 // No closures below: the instructions of a level are only there for what is inlined into its dispatch, which closures
 // given to other functions are not.
 
@@ -145,11 +148,12 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>
             let is_deep = column >= run.deep.0 && end <= run.deep.1;
             let error = ball.errors[usize::from(!is_deep)];
             let is_bright = column < run.bright.1 && end > run.bright.0;
-            let low = lit(simd, ball, m, &low, error, is_bright);
-            let high = lit(simd, ball, m, &high, error, is_bright);
-            let lower = narrow::<S>(low[0], high[0]);
-            // No error is −0, and so no sum with one.
-            let upper = narrow::<S>(low[1], high[1]);
+            let ambient = ambient(simd, ball, error);
+            let [low_lower, low_upper] = lit(simd, ball, m, &low, &ambient, is_bright);
+            let [high_lower, high_upper] = lit(simd, ball, m, &high, &ambient, is_bright);
+            let lower = narrow::<S>(low_lower, high_lower);
+            // An error is not −0, and so is no sum with one.
+            let upper = narrow::<S>(low_upper, high_upper);
             put::<S>(samples, &upper);
             let differ = [0, 1, 2].map(|i| !lower[i].simd_eq(upper[i]));
             if (differ[0] | differ[1] | differ[2]).any_true() {
@@ -265,7 +269,7 @@ pub(super) fn along<S: Simd>(simd: S, form: &Form, m: f64) -> Along<S::f64s> {
 /// The value of a form at some pixels.
 #[inline(always)]
 pub(super) fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S::f64s {
-    form.row + q * form.across + s * form.out
+    s.mul_add(form.out, q.mul_add(form.across, form.row))
 }
 
 #[inline(always)]
@@ -277,7 +281,8 @@ pub(super) fn hits<S: Simd>(
     x: f64,
 ) -> Hits<S::f64s> {
     let q = places::<S>(simd, 0) + x - ball.center;
-    let s = (S::f64s::splat(simd, ball.squared_radius - m * m) - q * q).sqrt();
+    let squared = S::f64s::splat(simd, ball.squared_radius - m * m);
+    let s = q.mul_add(-q, squared).sqrt();
     let light = value::<S>(light, q, s);
     Hits { q, s, light }
 }
@@ -311,38 +316,43 @@ fn shadowed<S: Simd>(
     (bits(dark), bits(known))
 }
 
-/// Samples of pixels in the light as they lie in memory, from below and from above, by a bound on the errors apart from the highlight's.
+/// The ambient part of samples as they lie in memory, less and more than it is by a bound on the errors of all but the highlight.
+#[inline(always)]
+pub(super) fn ambient<S: Simd>(simd: S, ball: &Ball, error: f64) -> [[S::f64s; 3]; 2] {
+    let [red, green, blue] = of_cycle(simd, &ball.color.ambient);
+    [
+        [red - error, green - error, blue - error],
+        [red + error, green + error, blue + error],
+    ]
+}
+
+/// Samples of pixels in the light as they lie in memory, from below and from above.
 #[inline(always)]
 pub(super) fn lit<S: Simd>(
     simd: S,
     ball: &Ball,
     m: f64,
     hits: &Hits<S::f64s>,
-    error: f64,
+    ambient: &[[S::f64s; 3]; 2],
     is_bright: bool,
 ) -> [[S::f64s; 3]; 2] {
-    let zero = S::f64s::splat(simd, 0.0);
-    let light = spread(hits.light.max(zero));
-    let ambient = of_cycle(simd, &ball.color.ambient);
+    let [mut lower, mut upper] = *ambient;
+    let light = spread(hits.light.max(0.0));
     let diffuse = of_cycle(simd, &ball.color.diffuse);
-    let mut samples = [zero; 3];
-    let mut errors = [S::f64s::splat(simd, error); 3];
     for i in 0..3 {
-        samples[i] = light[i] * diffuse[i] + ambient[i];
+        lower[i] = light[i].mul_add(diffuse[i], lower[i]);
+        upper[i] = light[i].mul_add(diffuse[i], upper[i]);
     }
     if let Some(halfway) = ball.halfway.as_ref().filter(|_| is_bright) {
-        let (power, power_error) = highlight(simd, ball, halfway, m, hits);
-        let (power, power_error) = (spread(power), spread(power_error));
+        let (power, error) = highlight(simd, ball, halfway, m, hits);
+        // No coefficient is negative.
+        let least = spread(power - error);
+        let most = spread(power + error);
         let specular = of_cycle(simd, &ball.color.specular);
         for i in 0..3 {
-            samples[i] += power[i] * specular[i];
-            errors[i] += power_error[i] * specular[i].abs();
+            lower[i] = least[i].mul_add(specular[i], lower[i]);
+            upper[i] = most[i].mul_add(specular[i], upper[i]);
         }
-    }
-    let (mut lower, mut upper) = (samples, samples);
-    for i in 0..3 {
-        lower[i] -= errors[i];
-        upper[i] += errors[i];
     }
     [lower, upper]
 }

@@ -35,7 +35,7 @@ pub(super) struct Paints<'f, 'c> {
 
 /// Which of them.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct PaintNumber(u32);
+pub(super) struct PaintNumber(pub(super) u32);
 
 impl<'f, 'c> Paints<'f, 'c> {
     /// `color` tells what decisions look like.

@@ -28,6 +28,38 @@ impl Seen {
     pub(super) const UNKNOWN: Seen = Seen::Only(Show::Unknown);
 }
 
+/// What is seen, or that this has not been found out, in a word: rows of these are compared without a branch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Packed(u64);
+
+impl Packed {
+    /// Nobody has looked yet.
+    pub(super) const OPEN: Packed = Packed(0);
+
+    pub(super) fn new(seen: Seen) -> Packed {
+        let (kind, number) = match seen {
+            Seen::Only(Show::Unknown) => (1, 0),
+            Seen::Only(Show::Paint(PaintNumber(number))) => (2, number),
+            Seen::Only(Show::Ball { mirrored, solid }) => (3 + u64::from(mirrored), solid),
+            Seen::First(number) => (5, number),
+        };
+        Packed(kind << 32 | u64::from(number))
+    }
+
+    pub(super) fn seen(self) -> Seen {
+        let number = self.0 as u32;
+        match self.0 >> 32 {
+            2 => Seen::Only(Show::Paint(PaintNumber(number))),
+            kind @ (3 | 4) => Seen::Only(Show::Ball {
+                mirrored: kind == 4,
+                solid: number,
+            }),
+            5 => Seen::First(number),
+            _ => Seen::UNKNOWN,
+        }
+    }
+}
+
 /// Several solids, and what each shows where it is in front.
 pub(super) struct Contest<'p> {
     pub(super) mirrored: bool,
@@ -47,33 +79,25 @@ struct Kept {
     rest: Seen,
 }
 
-/// What a row shows.
+/// More contests than this are forgotten, and found anew where they are still needed.
+const MANY: usize = 4096;
+
+/// What rows have to decide.
 #[derive(Default)]
 pub(super) struct Plan {
-    /// Each up to a crossing.
-    pieces: Vec<(usize, Seen)>,
     contests: Vec<Kept>,
     solids: Vec<(usize, Show)>,
 }
 
 impl Plan {
     pub(super) fn clear(&mut self) {
-        self.pieces.clear();
         self.contests.clear();
         self.solids.clear();
     }
 
-    /// What is seen from the crossing before up to this one.
-    pub(super) fn add(&mut self, crossing: usize, seen: Seen) {
-        match self.pieces.last_mut() {
-            Some((end, same)) if *same == seen => *end = crossing,
-            _ => self.pieces.push((crossing, seen)),
-        }
-    }
-
-    /// What is seen up to which crossing, from the left.
-    pub(super) fn pieces(&self) -> &[(usize, Seen)] {
-        &self.pieces
+    /// Whether there are so many contests that the oldest are hardly needed any more.
+    pub(super) fn is_full(&self) -> bool {
+        self.contests.len() > MANY
     }
 
     /// Leaves it to the row what is in front.

@@ -13,10 +13,10 @@
 //! u is 2⁻⁵³, the largest relative error of an f64 operation. Bounds are sums of terms that are not negative; computing them rounds
 //! too, each by less than 2⁻⁴⁰, for which [`MORE`] makes up.
 
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
 
-use super::span::{HalfLines, ROWS, Spans};
+use super::span::{ROWS, Spans};
 use crate::number::{Bounded, Real};
 use crate::scene::Support;
 use crate::tracer::tetrahedron::HalfSpace;
@@ -51,6 +51,18 @@ impl Screen {
     /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
     pub(super) fn place(&self, number: u32) -> f64 {
         3.0 * (f64::from(number) - self.half)
+    }
+
+    /// The first column at or after each place, given in columns: a whole number.
+    #[inline(always)]
+    fn ceil_all<S: Simd>(&self, places: S::f64s) -> S::f64s {
+        places.ceil().max(0.0).min(f64::from(self.size))
+    }
+
+    /// The number of columns up to each place, given in columns.
+    #[inline(always)]
+    fn count_all<S: Simd>(&self, places: S::f64s) -> S::f64s {
+        (places.floor() + 1.0).max(0.0).min(f64::from(self.size))
     }
 
     /// The first column at or after a place given in columns.
@@ -89,17 +101,24 @@ pub(super) struct HalfPlane {
     column: Bounded,
     row: Bounded,
     closed: bool,
-    /// A bound on the error of the sum, where it does not depend on the column, or is not computed from it.
-    error: f64,
     crossing: Crossing,
 }
 
 /// How rows cross a border.
 enum Crossing {
-    /// Not to be told from not at all.
-    Never,
-    /// At (constant + row · Y) · −`inverse` columns from the middle, and at most `slack` columns beside that.
-    Once { inverse: f64, slack: f64 },
+    /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is to the right of it, or to the left.
+    Right(Root),
+    Left(Root),
+    /// Not to be told from not at all. A bound on the error of the sum but for the part of Y.
+    Never {
+        error: f64,
+    },
+}
+
+struct Root {
+    at: f64,
+    per_row: f64,
+    slack: f64,
 }
 
 impl HalfPlane {
@@ -111,33 +130,36 @@ impl HalfPlane {
         screen: Screen,
     ) -> Self {
         let reach = screen.reach;
-        // The errors of the coefficients, and of g = constant + row · Y: the product and the sum round, by less than
-        // 2u (|constant| + |row · Y|) each.
-        let error = (constant.error()
-            + (column.error() + row.error()) * reach
-            + 4.0 * U * (constant.value().abs() + row.value().abs() * reach))
-            * MORE;
+        // The errors of the coefficients.
+        let carried = constant.error() + (column.error() + row.error()) * reach;
+        let magnitude = constant.value().abs() + row.value().abs() * reach;
         let across = column.value().abs() * reach;
-        let crossing = if across > error {
-            // The root in columns, N/2 − g/(3 · column), rounds four times, by less than 4u of a number below 3N where it matters,
-            // and E/(3 |column|) is what the error moves it by.
-            let inverse = 1.0 / (3.0 * column.value());
-            Crossing::Once {
-                inverse,
-                slack: (error * inverse.abs() + 16.0 * U * 3.0 * f64::from(screen.size)) * MORE,
-            }
-        } else {
-            Crossing::Never
+        // In columns the root is N/2 − (constant + row · Y)/(3 · column). The errors move it by that part of theirs. The inverse of
+        // 3 · column rounds by 2u, `at` and `per_row` by 2u more, the product with Y and the sum with it by u each: less than 8u of the
+        // terms' magnitudes, and of N/2 and the root, which is below 3N where it matters.
+        let inverse = 1.0 / (3.0 * column.value());
+        let root = Root {
+            at: screen.half - constant.value() * inverse,
+            per_row: -(row.value() * inverse),
+            slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
+                + 16.0 * U * 3.0 * f64::from(screen.size))
+                * MORE,
+        };
+        let is_known = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
+        // The sum rounds by less than 2u of its terms twice.
+        let error = (carried + 4.0 * U * magnitude) * MORE;
+        let crossing = match inverse > 0.0 {
+            _ if !is_known || across <= error => Crossing::Never {
+                error: (error + across) * MORE,
+            },
+            true => Crossing::Right(root),
+            false => Crossing::Left(root),
         };
         HalfPlane {
             constant,
             column,
             row,
             closed,
-            error: match crossing {
-                Crossing::Never => (error + across) * MORE,
-                Crossing::Once { .. } => error,
-            },
             crossing,
         }
     }
@@ -166,85 +188,70 @@ impl HalfPlane {
         Some(sign.is_gt() || (self.closed && sign.is_eq()))
     }
 
-    /// Its columns of the rows from Y = `y` on.
+    /// The same, asked only where its border may be.
+    fn decide_near(&self, x: f64, y: f64, screen: Screen) -> Option<bool> {
+        let (root, rightward) = match &self.crossing {
+            Crossing::Right(root) => (root, true),
+            Crossing::Left(root) => (root, false),
+            Crossing::Never { .. } => return self.decide(x, y),
+        };
+        let beyond = screen.half + x / 3.0 - (y * root.per_row + root.at);
+        if beyond.abs() > root.slack * MORE + U * (beyond.abs() + f64::from(screen.size)) {
+            Some((beyond > 0.0) == rightward)
+        } else {
+            self.decide(x, y)
+        }
+    }
+
+    /// Brings in what it has of as many rows as there are lanes.
     #[inline(always)]
-    fn cross<S: Simd>(&self, simd: S, y: f64, screen: Screen) -> HalfLines {
-        let (inverse, slack) = match self.crossing {
-            Crossing::Never => return self.cross_never(y, screen),
-            Crossing::Once { inverse, slack } => (inverse, slack),
-        };
-        let rightward = inverse > 0.0;
-        let mut lines = HalfLines {
-            rightward,
-            possible: [0; ROWS],
-            certain: [0; ROWS],
-        };
-        for first in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = places::<S>(simd, first) + y;
-            let g = y * self.row.value() + self.constant.value();
-            let root = -(g * inverse) + screen.half;
-            let (low, high) = (root - slack, root + slack);
-            if rightward {
-                put_ceil::<S>(screen, low, &mut lines.possible[first..]);
-                put_ceil::<S>(screen, high, &mut lines.certain[first..]);
-            } else {
-                put_count::<S>(screen, high, &mut lines.possible[first..]);
-                put_count::<S>(screen, low, &mut lines.certain[first..]);
+    fn cut<S: Simd>(&self, simd: S, y: S::f64s, reaches: &mut Reaches<S::f64s>) {
+        let Reaches { possible, certain } = reaches;
+        match &self.crossing {
+            Crossing::Right(root) => {
+                let place = y * root.per_row + root.at;
+                possible[0] = possible[0].max(place - root.slack);
+                certain[0] = certain[0].max(place + root.slack);
             }
-        }
-        if lines.possible != lines.certain {
-            self.narrow(&mut lines, y, screen);
-        }
-        lines
-    }
-
-    /// The same where no row is known to cross its border.
-    fn cross_never(&self, y: f64, screen: Screen) -> HalfLines {
-        let mut lines = HalfLines {
-            rightward: true,
-            possible: [0; ROWS],
-            certain: [0; ROWS],
-        };
-        for (row, place) in PLACES.iter().enumerate() {
-            let y = y + place;
-            let g = self.constant.value() + self.row.value() * y;
-            let known = if g > self.error {
-                Some(true)
-            } else if g < -self.error {
-                Some(false)
-            } else if self.column.is_zero() {
-                self.decide(0.0, y)
-            } else {
-                None
-            };
-            let border = |all: bool| if all { 0 } else { screen.size };
-            lines.possible[row] = border(known != Some(false));
-            lines.certain[row] = border(known == Some(true));
-        }
-        lines
-    }
-
-    /// Asks the columns in doubt, from the outside in.
-    fn narrow(&self, lines: &mut HalfLines, y: f64, screen: Screen) {
-        for (row, place) in PLACES.iter().enumerate() {
-            let y = y + place;
-            let (possible, certain) = (&mut lines.possible[row], &mut lines.certain[row]);
-            while *possible != *certain {
-                let column = if lines.rightward {
-                    *possible
-                } else {
-                    *possible - 1
-                };
-                match self.decide(screen.place(column), y) {
-                    Some(true) => *certain = *possible,
-                    Some(false) if lines.rightward => *possible += 1,
-                    Some(false) => *possible -= 1,
-                    None => break,
+            Crossing::Left(root) => {
+                let place = y * root.per_row + root.at;
+                possible[1] = possible[1].min(place + root.slack);
+                certain[1] = certain[1].min(place - root.slack);
+            }
+            Crossing::Never { error } => {
+                let sum = y * self.row.value() + self.constant.value();
+                let is_in = sum.simd_gt(*error);
+                if !is_in.all_true() {
+                    let mut is_in = is_in.to_bitmask();
+                    let mut is_out = sum.simd_lt(-*error).to_bitmask();
+                    if self.column.is_zero() {
+                        for (lane, &y) in y.as_slice().iter().enumerate() {
+                            match self.decide(0.0, y) {
+                                Some(true) => is_in |= 1 << lane,
+                                Some(false) => is_out |= 1 << lane,
+                                None => {}
+                            }
+                        }
+                    }
+                    let none = S::f64s::splat(simd, NOWHERE);
+                    let is_in = S::mask64s::from_bitmask(simd, is_in);
+                    let is_out = S::mask64s::from_bitmask(simd, is_out);
+                    possible[1] = is_out.select(none, possible[1]);
+                    certain[1] = is_in.select(certain[1], none);
                 }
             }
         }
     }
 }
+
+/// Where columns begin and end in as many rows as there are lanes, given in columns: the first at or after a place, up to another place.
+struct Reaches<V> {
+    possible: [V; 2],
+    certain: [V; 2],
+}
+
+/// No column lies up to this place.
+const NOWHERE: f64 = -1.0;
 
 /// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
 /// chord in every row.
@@ -383,53 +390,48 @@ impl Ellipse {
         )
     }
 
-    /// Its columns of the rows from Y = `y` on.
+    /// What it has of as many rows as there are lanes.
     #[inline(always)]
-    fn cross<S: Simd>(&self, simd: S, y: f64, screen: Screen) -> Spans {
+    fn reaches<S: Simd>(&self, simd: S, y: S::f64s, screen: Screen) -> Reaches<S::f64s> {
+        let zero = S::f64s::splat(simd, 0.0);
+        let none = S::f64s::splat(simd, NOWHERE);
         if !self.is_bounded {
-            return Spans::unknown(screen.size);
+            let all = S::f64s::splat(simd, f64::from(screen.size));
+            return Reaches {
+                possible: [zero, all],
+                certain: [zero, none],
+            };
         }
-        let mut spans = Spans::NONE;
-        for first in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = places::<S>(simd, first) + y;
-            let zero = S::f64s::splat(simd, 0.0);
-            let m = self.off.of_rows::<S>(y);
-            let squared = -(m * m) + self.squared_radius;
-            let (most, least) = (squared + self.chord_error, squared - self.chord_error);
-            let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
-            let is_certain = is_met & least.simd_gt(zero);
-            let middle = y * self.center.1 + self.center.0;
-            // No NaN comes here: m is infinite at worst, and then the row is beyond.
-            let half = most.max(zero).sqrt();
-            let from = in_columns::<S>(screen, middle - half) - self.slack;
-            let to = in_columns::<S>(screen, middle + half) + self.slack;
-            // Where nothing is met, no column is before the row's first.
-            let none = S::f64s::splat(simd, -1.0);
-            put_ceil::<S>(
-                screen,
-                is_met.select(from, none),
-                &mut spans.possible[0][first..],
-            );
-            put_count::<S>(
-                screen,
-                is_met.select(to, none),
-                &mut spans.possible[1][first..],
-            );
-            let half = least.max(zero).sqrt();
-            let from = in_columns::<S>(screen, middle - half) + self.slack;
-            let to = in_columns::<S>(screen, middle + half) - self.slack;
-            put_ceil::<S>(
-                screen,
-                is_certain.select(from, none),
-                &mut spans.certain[0][first..],
-            );
-            put_count::<S>(
-                screen,
-                is_certain.select(to, none),
-                &mut spans.certain[1][first..],
-            );
+        let m = self.off.of_rows::<S>(y);
+        let squared = -(m * m) + self.squared_radius;
+        let (most, least) = (squared + self.chord_error, squared - self.chord_error);
+        let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
+        let is_certain = is_met & least.simd_gt(zero);
+        let middle = y * self.center.1 + self.center.0;
+        // No NaN comes here: m is infinite at worst, and then the row is beyond.
+        let half = most.max(zero).sqrt();
+        let from = in_columns::<S>(screen, middle - half) - self.slack;
+        let to = in_columns::<S>(screen, middle + half) + self.slack;
+        let possible = [from, is_met.select(to, none)];
+        let half = least.max(zero).sqrt();
+        let from = in_columns::<S>(screen, middle - half) + self.slack;
+        let to = in_columns::<S>(screen, middle + half) - self.slack;
+        let certain = [from, is_certain.select(to, none)];
+        Reaches { possible, certain }
+    }
+
+    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    fn decide(&self, x: f64, y: f64, screen: Screen) -> Option<bool> {
+        let [possible, certain] = dispatch!(Level::baseline(), simd => {
+            let y = splat(simd, y);
+            let Reaches { possible, certain } = self.reaches(simd, y, screen);
+            [possible, certain].map(|ends| ends.map(|end| end.as_slice()[0]))
+        });
+        let column = screen.half + x / 3.0;
+        if column < possible[0] || column > possible[1] {
+            return Some(false);
         }
-        spans
+        (certain[0] <= column && column <= certain[1]).then_some(true)
     }
 
     /// The rows that it can cross.
@@ -488,22 +490,125 @@ impl<'f> Shape<'f> {
     /// Its columns of the rows from `row` on.
     #[inline(always)]
     pub(super) fn cross<S: Simd>(&self, simd: S, row: u32, screen: Screen) -> Spans {
-        let y = screen.place(row);
-        let mut spans = match &self.ellipse {
-            Some(ellipse) => ellipse.cross(simd, y, screen),
-            None => Spans::whole(screen.size),
+        let mut spans = Spans::NONE;
+        for first in (0..ROWS).step_by(S::f64s::LEN) {
+            let y = places::<S>(simd, first) + screen.place(row);
+            let mut reaches = match &self.ellipse {
+                Some(ellipse) => ellipse.reaches(simd, y, screen),
+                None => {
+                    let zero = S::f64s::splat(simd, 0.0);
+                    let all = [zero, zero + f64::from(screen.size)];
+                    Reaches {
+                        possible: all,
+                        certain: all,
+                    }
+                }
+            };
+            for half_plane in self.half_planes {
+                half_plane.cut(simd, y, &mut reaches);
+            }
+            let is_crossed =
+                y.simd_ge(screen.place(self.rows.0)) & y.simd_lt(screen.place(self.rows.1));
+            let Reaches { possible, certain } = reaches;
+            let possible = [
+                screen.ceil_all::<S>(possible[0]),
+                screen.count_all::<S>(possible[1]),
+            ];
+            let certain = [
+                screen.ceil_all::<S>(certain[0]),
+                screen.count_all::<S>(certain[1]),
+            ];
+            spans.put(simd, first, is_crossed, possible, certain);
+        }
+        spans
+    }
+
+    /// Asks the columns in doubt, from the outside in.
+    pub(super) fn narrow(&self, spans: &mut Spans, row: u32, screen: Screen) {
+        spans.is_certain = true;
+        for i in 0..ROWS {
+            let (mut from, mut to) = (spans.possible[0][i], spans.possible[1][i]);
+            let certain = (spans.certain[0][i], spans.certain[1][i]);
+            if (from, to) == certain {
+                continue;
+            }
+            let y = screen.place(row + i as u32);
+            let is_certain = |column: u32| certain.0 <= column && column < certain.1;
+            let holds = |column: u32| match is_certain(column) {
+                true => Some(true),
+                false => self.decide(screen.place(column), y, screen),
+            };
+            let (mut first, mut last) = (None, None);
+            while from < to && first.is_none() {
+                match holds(from) {
+                    Some(false) => from += 1,
+                    Some(true) => first = Some(from),
+                    None => break,
+                }
+            }
+            while from < to && last.is_none() {
+                match holds(to - 1) {
+                    Some(false) => to -= 1,
+                    Some(true) => last = Some(to - 1),
+                    None => break,
+                }
+            }
+            // What lies between columns of a convex part of the picture is in it.
+            let known = [first, last].into_iter().flatten();
+            let known = known.flat_map(|column| [column, column + 1]);
+            let certain = [certain.0, certain.1]
+                .into_iter()
+                .filter(|_| certain.0 < certain.1);
+            let ends = known.chain(certain);
+            let (begin, end) = ends.fold((u32::MAX, 0), |(begin, end), column| {
+                (begin.min(column), end.max(column))
+            });
+            let certain = if begin < end {
+                (begin, end)
+            } else {
+                (from, from)
+            };
+            (spans.possible[0][i], spans.possible[1][i]) = (from, to);
+            (spans.certain[0][i], spans.certain[1][i]) = certain;
+            spans.is_certain &= (from, to) == certain;
+            if from == to {
+                spans.filled &= !(1 << i);
+            }
+        }
+    }
+
+    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    fn decide(&self, x: f64, y: f64, screen: Screen) -> Option<bool> {
+        let mut all = match &self.ellipse {
+            Some(ellipse) => ellipse.decide(x, y, screen),
+            None => Some(true),
         };
         for half_plane in self.half_planes {
-            spans.and(&half_plane.cross(simd, y, screen).spans(screen.size));
+            match half_plane.decide_near(x, y, screen) {
+                Some(false) => return Some(false),
+                Some(true) => {}
+                None => all = None,
+            }
         }
-        let within = |limit: u32| limit.saturating_sub(row);
-        spans.tidy((within(self.rows.0), within(self.rows.1)));
-        spans
+        all
     }
 }
 
 /// Y of neighbouring rows and X of neighbouring columns, from the first.
-const PLACES: [f64; ROWS] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
+const PLACES: [f64; ROWS] = {
+    let mut places = [0.0; ROWS];
+    let mut number = 0;
+    while number < ROWS {
+        places[number] = 3.0 * number as f64;
+        number += 1;
+    }
+    places
+};
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, x: f64) -> S::f64s {
+    S::f64s::splat(simd, x)
+}
 
 /// As many of them as there are lanes, from one on.
 #[inline(always)]
@@ -517,24 +622,11 @@ pub(super) fn in_columns<S: Simd>(screen: Screen, x: S::f64s) -> S::f64s {
     x * (1.0 / 3.0) + screen.half
 }
 
-/// The first column at or after each place, given in columns.
+/// Whole numbers of columns, below 2³².
 #[inline(always)]
-fn put_ceil<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
-    put_columns::<S>(screen, places.ceil(), columns);
-}
-
-/// The number of columns up to each place, given in columns.
-#[inline(always)]
-fn put_count<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
-    put_columns::<S>(screen, places.floor() + 1.0, columns);
-}
-
-/// Whole numbers, brought into the row.
-#[inline(always)]
-pub(super) fn put_columns<S: Simd>(screen: Screen, places: S::f64s, columns: &mut [u32]) {
-    let columns_of_row = places.max(0.0).min(f64::from(screen.size));
+pub(super) fn put_columns<S: Simd>(places: S::f64s, columns: &mut [u32]) {
     // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper half.
-    let shifted = columns_of_row + f64::from_bits((1023 + 52) << 52);
+    let shifted = places + f64::from_bits((1023 + 52) << 52);
     for (column, place) in columns.iter_mut().zip(shifted.as_slice()) {
         *column = place.to_bits() as u32;
     }

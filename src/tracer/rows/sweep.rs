@@ -7,8 +7,10 @@ use std::ops::Range;
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
 
+use super::plan::{Packed, Seen};
 use super::shape::{Screen, Shape};
 use super::span::ROWS;
 
@@ -84,9 +86,6 @@ enum Held {
     Unknown,
     Yes,
 }
-
-/// In what order a border's crossings of a row come, and what is beyond each.
-const KINDS: [Held; 4] = [Held::Unknown, Held::Yes, Held::Unknown, Held::No];
 
 /// How many borders hold a column, and of how many it is not known.
 #[derive(Default)]
@@ -173,129 +172,339 @@ impl Column {
     }
 }
 
-/// The crossings of a row, and the column at which the sweep is.
+/// Whether a border crosses some rows, and how often.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Crosses {
+    No,
+    /// Twice: where its columns begin and end is certain in all of these rows.
+    Certainly,
+    /// Four times: where they begin possibly and certainly, and where they end certainly and possibly.
+    Possibly,
+}
+
+/// A crossing: which of the four of which border.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct Crossing(u32);
+
+impl Crossing {
+    /// Those of a border, from the left.
+    fn of(border: usize, crosses: Crosses) -> impl Iterator<Item = Crossing> {
+        let kinds: &[u32] = match crosses {
+            Crosses::No => &[],
+            Crosses::Certainly => &[1, 3],
+            Crosses::Possibly => &[0, 1, 2, 3],
+        };
+        kinds
+            .iter()
+            .map(move |kind| Crossing(4 * border as u32 + kind))
+    }
+
+    fn border(self) -> usize {
+        self.0 as usize / 4
+    }
+
+    /// What is known of the columns after it.
+    fn after(self) -> Held {
+        [Held::Unknown, Held::Yes, Held::Unknown, Held::No][self.0 as usize % 4]
+    }
+
+    /// Whether it is one of those where columns end.
+    fn is_end(self) -> bool {
+        self.0 % 4 >= 2
+    }
+}
+
+/// A part of a row: up to which crossing, and what is seen there.
+#[derive(Clone, Copy)]
+struct Piece {
+    to: Crossing,
+    seen: Packed,
+}
+
+/// The crossings of a row from the left, and what is seen between them.
+///
+/// That depends on which borders have been crossed, and not on where. So it is kept from row to row, and where two crossings change
+/// places it is forgotten only between these two.
 #[derive(Default)]
 pub(super) struct Sweep {
-    pub(super) column: Column,
+    column: Column,
     /// The first of the rows that are crossed.
     first: Option<u32>,
-    /// The borders that cross them, and whether it is certain where in all of them.
-    crossed: Vec<(usize, bool)>,
-    /// The same of the rows that were crossed before.
-    crossed_before: Vec<(usize, bool)>,
-    /// Four times for each of these: where its columns begin possibly and certainly, and where they end certainly and possibly.
+    /// How each border crosses them.
+    crosses: Vec<Crosses>,
+    /// Where, row by row, for each of its four crossings.
     places: Vec<[u32; ROWS]>,
-    /// The crossings of a row, from the left: the column in the upper half, and in the lower which of `places` it is.
-    crossings: Vec<u64>,
-    /// Whether there are columns before each crossing, and after the last.
-    gaps: Vec<bool>,
+    /// In the order of the row that was entered last.
+    crossings: Vec<Crossing>,
+    /// What is seen before each of them, and after the last.
+    seen: Vec<Packed>,
+    /// Bit by bit, the rows in which they come in another order, and those that have columns of which it is not known what is seen.
+    disordered: u64,
+    wanting: u64,
+    /// What the row that was entered last shows, if `is_planned`; neighbours that show the same are one. The first is none.
+    pieces: Vec<Piece>,
+    is_planned: bool,
+    /// The places in `seen` where nobody has looked.
+    open: Vec<usize>,
+    end: Crossing,
+    /// Borders whose crossings are not, or no longer, those in `crossings`.
+    changed: Vec<usize>,
+    is_changed: Vec<bool>,
 }
 
 impl Sweep {
     /// Prepares for rows of a frame.
-    pub(super) fn begin(&mut self, borders: &AllBorders<'_>) {
+    pub(super) fn begin(&mut self, borders: &AllBorders<'_>, screen: Screen) {
+        let count = borders.of.len();
         self.first = None;
-        self.crossed.clear();
-        self.crossings.clear();
-        self.gaps.clear();
-        self.gaps.push(false);
+        self.crosses.clear();
+        self.crosses.resize(count, Crosses::No);
+        self.places.resize(4 * count + 4, [0; ROWS]);
+        // The end of every row is a crossing of no border.
+        self.end = Crossing(4 * count as u32);
+        self.places[4 * count] = [screen.size; ROWS];
+        self.is_changed.clear();
+        self.is_changed.resize(count, false);
         self.column.held.clear();
-        self.column.held.resize(borders.of.len(), Held::No);
+        self.column.held.resize(count, Held::No);
+        self.crossings.clear();
+        self.forget();
     }
 
-    /// Goes to the left end of a row. Returns whether other borders are crossed than in the row that was entered last, or in another
-    /// order, or with columns between others of them.
+    /// Forgets what is seen.
+    pub(super) fn forget(&mut self) {
+        self.seen.clear();
+        self.seen.resize(self.crossings.len() + 1, Packed::OPEN);
+        self.is_planned = false;
+    }
+
+    /// Goes to a row. `look` is asked what is seen in a column where that is not known.
     pub(super) fn enter(
         &mut self,
         row: u32,
         borders: &AllBorders<'_>,
         level: Level,
         screen: Screen,
-    ) -> bool {
+        look: impl FnMut(&Column) -> Seen,
+    ) {
         let first = row - row % ROWS as u32;
-        let mut is_new = self.first.is_none();
         if self.first != Some(first) {
             self.first = Some(first);
-            std::mem::swap(&mut self.crossed, &mut self.crossed_before);
-            self.crossed.clear();
-            self.places.clear();
-            dispatch!(level, simd => self.cross(simd, borders, first, screen));
-            // The same borders mostly cross in the same order as in the rows before.
-            if self.crossed != self.crossed_before {
-                is_new = true;
-                self.crossings.clear();
-                for (number, &(_, is_certain)) in self.crossed.iter().enumerate() {
-                    let kinds: &[u64] = if is_certain { &[1, 3] } else { &[0, 1, 2, 3] };
-                    let number = 4 * number as u64;
-                    self.crossings
-                        .extend(kinds.iter().map(|kind| number + kind));
-                }
-                self.gaps.clear();
-                self.gaps.resize(self.crossings.len() + 1, false);
-            }
+            dispatch!(level, simd => {
+                self.cross(simd, borders, first, screen);
+                self.find_disorder(simd);
+            });
         }
         let row = (row - first) as usize;
-        for i in 0..self.crossings.len() {
-            let at = self.crossings[i] & u64::from(u32::MAX);
-            let place = self.places[at as usize][row];
-            let crossing = u64::from(place) << 32 | at;
-            let mut to = i;
-            while to > 0 && self.crossings[to - 1] > crossing {
-                self.crossings[to] = self.crossings[to - 1];
-                to -= 1;
-                is_new = true;
-            }
-            self.crossings[to] = crossing;
+        if self.disordered >> row & 1 == 1 {
+            self.order(row);
+            dispatch!(level, simd => self.find_disorder(simd));
         }
-        let mut from = 0;
-        for (i, gap) in self.gaps.iter_mut().enumerate() {
-            let to = match self.crossings.get(i) {
-                Some(crossing) => (crossing >> 32) as u32,
-                None => screen.size,
-            };
-            is_new |= *gap != (from < to);
-            *gap = from < to;
-            from = to;
+        if !self.is_planned {
+            dispatch!(level, simd => self.plan(simd));
         }
-        is_new
+        if self.wanting >> row & 1 == 1 {
+            self.look(row, borders, look);
+            dispatch!(level, simd => self.plan(simd));
+        }
+    }
+
+    /// How many parts the row has.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.len() - 1
+    }
+
+    /// Where a part of a row ends, and what is seen there.
+    pub(super) fn part(&self, number: usize, row: u32) -> (u32, Seen) {
+        let Piece { to, seen } = self.pieces[number + 1];
+        (self.places[to.0 as usize][row as usize % ROWS], seen.seen())
+    }
+
+    /// The crossing after as many others, or the row's end.
+    fn crossing(&self, number: usize) -> Crossing {
+        self.crossings.get(number).copied().unwrap_or(self.end)
+    }
+
+    /// The column of a crossing.
+    fn place(&self, crossing: usize, row: usize) -> u32 {
+        self.places[self.crossing(crossing).0 as usize][row]
     }
 
     /// Whether there are columns before a crossing, or after the last.
-    pub(super) fn has_columns_before(&self, crossing: usize) -> bool {
-        self.gaps[crossing]
+    fn has_columns(&self, gap: usize, row: usize) -> bool {
+        let from = gap.checked_sub(1);
+        from.map_or(0, |before| self.place(before, row)) < self.place(gap, row)
     }
 
-    /// How many crossings the row has.
-    pub(super) fn len(&self) -> usize {
-        self.crossings.len()
+    /// Sees to it that the crossings come in the order of a row.
+    fn order(&mut self, row: usize) {
+        for i in 1..self.crossings.len() {
+            let crossing = self.crossings[i];
+            let place = self.place(i, row);
+            let mut to = i;
+            while to > 0 && self.place(to - 1, row) > place {
+                self.crossings[to] = self.crossings[to - 1];
+                // Between the two, one was crossed before, and now the other.
+                self.seen[to] = Packed::OPEN;
+                to -= 1;
+                self.is_planned = false;
+            }
+            self.crossings[to] = crossing;
+        }
     }
 
-    /// The column of a crossing; none after the last.
-    pub(super) fn place(&self, crossing: usize) -> Option<u32> {
-        let crossing = self.crossings.get(crossing)?;
-        Some((crossing >> 32) as u32)
+    /// What rows show where the crossings are in this order, as far as it is known.
+    #[inline(always)]
+    fn plan<S: Simd>(&mut self, simd: S) {
+        // What comes next is not to be foreseen: every step does the same, and counts or does not count.
+        let nothing = Piece {
+            to: self.end,
+            seen: Packed::OPEN,
+        };
+        self.pieces.clear();
+        self.pieces.resize(self.seen.len() + 1, nothing);
+        self.open.clear();
+        self.open.resize(self.seen.len() + 1, 0);
+        let (mut pieces, mut open) = (0, 0);
+        let mut last = nothing;
+        for (gap, &seen) in self.seen.iter().enumerate() {
+            let is_open = seen == Packed::OPEN;
+            self.open[open] = gap;
+            open += usize::from(is_open);
+            let (to, now) = (self.crossings.get(gap).copied().unwrap_or(self.end), seen);
+            let is_new = !is_open & (now != last.seen);
+            pieces += usize::from(is_new);
+            last = Piece {
+                to: if is_open { last.to } else { to },
+                seen: if is_open { last.seen } else { now },
+            };
+            self.pieces[pieces] = last;
+        }
+        self.pieces.truncate(pieces + 1);
+        self.open.truncate(open);
+        self.is_planned = true;
+        let mut wanting = mask32x8::splat(simd, false);
+        for &gap in &self.open {
+            let from = match gap.checked_sub(1) {
+                Some(before) => &self.places[self.crossings[before].0 as usize],
+                None => &[0; ROWS],
+            };
+            let to = &self.places[self.crossing(gap).0 as usize];
+            let (from, to) = (u32x8::from_slice(simd, from), u32x8::from_slice(simd, to));
+            wanting |= from.simd_lt(to);
+        }
+        self.wanting = wanting.to_bitmask();
     }
 
-    /// Goes over a crossing.
-    pub(super) fn pass(&mut self, crossing: usize, borders: &AllBorders<'_>) {
-        let at = self.crossings[crossing] as u32;
-        let (border, _) = self.crossed[(at >> 2) as usize];
-        let after = KINDS[(at & 3) as usize];
-        self.column.change(border, borders.of[border], after);
+    /// Finds out what is seen where the row has columns of which that is not known.
+    fn look(
+        &mut self,
+        row: usize,
+        borders: &AllBorders<'_>,
+        mut look: impl FnMut(&Column) -> Seen,
+    ) {
+        for gap in 0..self.seen.len() {
+            if self.seen[gap] == Packed::OPEN && self.has_columns(gap, row) {
+                self.seen[gap] = Packed::new(look(&self.column));
+            }
+            if let Some(crossing) = self.crossings.get(gap) {
+                let border = crossing.border();
+                let of = borders.of[border];
+                self.column.change(border, of, crossing.after());
+            }
+        }
     }
 
     /// How the borders cross the rows from `first` on.
     #[inline(always)]
     fn cross<S: Simd>(&mut self, simd: S, borders: &AllBorders<'_>, first: u32, screen: Screen) {
+        self.changed.clear();
         for (border, &(from, to)) in borders.rows.iter().enumerate() {
+            let mut crosses = Crosses::No;
             if from < first + ROWS as u32 && to > first {
-                let spans = borders.shapes[border].cross(simd, first, screen);
-                if !spans.is_none() {
+                let shape = &borders.shapes[border];
+                let mut spans = shape.cross(simd, first, screen);
+                if !spans.is_certain {
+                    shape.narrow(&mut spans, first, screen);
+                }
+                if spans.filled != 0 {
+                    crosses = if spans.is_certain {
+                        Crosses::Certainly
+                    } else {
+                        Crosses::Possibly
+                    };
+                    spans.put_empty_beside();
                     let ([a, d], [b, c]) = (spans.possible, spans.certain);
-                    self.crossed.push((border, a == b && c == d));
-                    self.places.extend([a, b, c, d]);
+                    self.places[4 * border..4 * border + 4].copy_from_slice(&[a, b, c, d]);
                 }
             }
+            if self.crosses[border] != crosses {
+                self.crosses[border] = crosses;
+                self.changed.push(border);
+            }
         }
+        if !self.changed.is_empty() {
+            self.change();
+        }
+        // Columns may have come between other crossings.
+        self.is_planned &= self.open.is_empty();
+    }
+
+    /// Takes out the crossings of borders that have changed, and brings in their new ones.
+    fn change(&mut self) {
+        self.is_planned = false;
+        for &border in &self.changed {
+            self.is_changed[border] = true;
+        }
+        // Crossings that are gone and where columns began, less those where they ended: where these are equal, what was seen still is.
+        let (mut open, mut kept) = (0, 0);
+        let mut before = self.seen[0];
+        for i in 0..self.crossings.len() {
+            let crossing = self.crossings[i];
+            let is_gone = self.is_changed[crossing.border()];
+            if is_gone {
+                open += if crossing.is_end() { -1 } else { 1 };
+            } else {
+                self.crossings[kept] = crossing;
+                self.seen[kept] = before;
+                kept += 1;
+            }
+            if !is_gone || before == Packed::OPEN {
+                before = if open == 0 {
+                    self.seen[i + 1]
+                } else {
+                    Packed::OPEN
+                };
+            }
+        }
+        self.seen[kept] = before;
+        self.crossings.truncate(kept);
+        self.seen.truncate(kept + 1);
+        for border in self.changed.drain(..) {
+            self.is_changed[border] = false;
+            let place = self.places[4 * border][0];
+            let is_before = |crossing: &&Crossing| self.places[crossing.0 as usize][0] <= place;
+            let first = self.crossings.iter().take_while(is_before).count();
+            let outside = self.seen[first];
+            let crossings = Crossing::of(border, self.crosses[border]);
+            for (to, crossing) in (first..).zip(crossings) {
+                let seen = if to == first { outside } else { Packed::OPEN };
+                self.crossings.insert(to, crossing);
+                self.seen.insert(to, seen);
+            }
+        }
+    }
+
+    /// Finds the rows in which the crossings are not in order.
+    #[inline(always)]
+    fn find_disorder<S: Simd>(&mut self, simd: S) {
+        let mut disordered = mask32x8::splat(simd, false);
+        let mut before = u32x8::splat(simd, 0);
+        for crossing in &self.crossings {
+            let place = u32x8::from_slice(simd, &self.places[crossing.0 as usize]);
+            disordered |= before.simd_gt(place);
+            before = place;
+        }
+        self.disordered = disordered.to_bitmask();
     }
 }
