@@ -52,17 +52,20 @@ impl Form {
         self.constant + self.off * m
     }
 
-    /// The least and the most that f64 computes of it along a stretch. It takes the same operations as in a pixel, and rounding
-    /// keeps order: where a term is less it is not more rounded, and so are sums. So this needs no bound of its own.
+    /// The least and the most that f64 computes of it in a pixel of a stretch, by these operations: rounding keeps order, so where a term
+    /// is less it is not more rounded, and so are sums. Therefore this needs no bound of its own.
     pub(super) fn along(&self, stretch: &Stretch) -> (f64, f64) {
         let ends = |factor: f64, (low, high): (f64, f64)| {
             let (a, b) = (low * factor, high * factor);
             (a.min(b), a.max(b))
         };
-        let row = self.of_row(stretch.m);
+        let off = ends(self.off, stretch.m);
         let across = ends(self.across, stretch.q);
         let out = ends(self.out, stretch.s);
-        (row + across.0 + out.0, row + across.1 + out.1)
+        (
+            self.constant + off.0 + across.0 + out.0,
+            self.constant + off.1 + across.1 + out.1,
+        )
     }
 
     /// Whether it is certainly less than 0 in every pixel of a stretch.
@@ -71,9 +74,9 @@ impl Form {
     }
 }
 
-/// Neighbouring pixels of a sphere in a row: its m, and between which q and which s they are, as f64 computes them.
+/// Neighbouring pixels of a sphere: between which m, q and s they are, as f64 computes them.
 pub(super) struct Stretch {
-    m: f64,
+    m: (f64, f64),
     q: (f64, f64),
     s: (f64, f64),
 }
@@ -305,21 +308,21 @@ impl Ball {
         }
     }
 
-    /// The pixels from X = `first` to `last` of the row at Y.
-    pub(super) fn stretch(&self, y: f64, (first, last): (f64, f64)) -> Stretch {
-        let m = self.off.at(y);
-        let q = (first - self.center, last - self.center);
-        let s = |q: f64| ((self.squared_radius - m * m) - q * q).max(0.0).sqrt();
-        let (a, b) = (s(q.0), s(q.1));
-        let most = if q.0 < 0.0 && q.1 > 0.0 {
-            s(0.0)
-        } else {
-            a.max(b)
+    /// The pixels from the column at X to another, in the rows from that at Y to another.
+    pub(super) fn stretch(&self, x: (f64, f64), y: (f64, f64)) -> Stretch {
+        let ends = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
+        let m = ends((self.off.at(y.0), self.off.at(y.1)));
+        let q = (x.0 - self.center, x.1 - self.center);
+        let squares = |(low, high): (f64, f64)| {
+            let (a, b) = ends((low * low, high * high));
+            (if low < 0.0 && high > 0.0 { 0.0 } else { a }, b)
         };
+        let (off, across) = (squares(m), squares(q));
+        let s = |off: f64, across: f64| ((self.squared_radius - off) - across).max(0.0).sqrt();
         Stretch {
             m,
             q,
-            s: (a.min(b), most),
+            s: (s(off.1, across.1), s(off.0, across.0)),
         }
     }
 

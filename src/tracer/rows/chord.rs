@@ -34,6 +34,13 @@ pub(super) struct Chords {
     facing: Arcs,
     /// Those outside of which there is certainly no highlight.
     bright: Runs,
+    /// The casters that may throw a shadow on any of them, by [`bit_of`].
+    shaders: u64,
+}
+
+/// The bit of a caster by its number, which it may have in common with others.
+pub(super) fn bit_of(caster: usize) -> u64 {
+    1 << (caster % 64)
 }
 
 /// The columns in which a form that is concave or convex is positive.
@@ -52,6 +59,8 @@ pub(super) struct Chord {
     pub(super) known: Columns,
     pub(super) deep: Columns,
     pub(super) bright: Columns,
+    /// The casters that may throw a shadow on them, by [`bit_of`].
+    pub(super) shaders: u64,
     /// The columns in which it faces the light, or those in which it does not; `None` where each is to be asked.
     pub(super) facing: Option<(Columns, bool)>,
 }
@@ -87,7 +96,9 @@ impl AllChords {
         let first = row - within;
         if self.first[number] != Some(first) {
             self.first[number] = Some(first);
-            self.chords[number] = dispatch!(level, simd => Chords::new(simd, ball, first, screen));
+            let mut chords = dispatch!(level, simd => Chords::new(simd, ball, first, screen));
+            chords.shaders = chords.shaders_of(shaded, first, screen);
+            self.chords[number] = chords;
         }
         self.chords[number].row(within as usize)
     }
@@ -103,6 +114,7 @@ impl Chords {
             settled: 0,
         },
         bright: [[0; ROWS]; 2],
+        shaders: 0,
     };
 
     fn row(&self, row: usize) -> Chord {
@@ -116,8 +128,27 @@ impl Chords {
             known: of(&self.known),
             deep: of(&self.deep),
             bright: of(&self.bright),
+            shaders: self.shaders,
             facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
         }
+    }
+
+    /// The casters that may throw a shadow on any of the pixels known.
+    fn shaders_of(&self, shaded: &ShadedBall<'_>, first: u32, screen: Screen) -> u64 {
+        let [from, to] = &self.known;
+        let is_met = |row: &usize| from[*row] < to[*row];
+        let (Some(low), Some(high)) = ((0..ROWS).find(is_met), (0..ROWS).rfind(is_met)) else {
+            return 0;
+        };
+        let rows = low..high + 1;
+        let begin = from[rows.clone()].iter().fold(u32::MAX, |a, &b| a.min(b));
+        let end = to[rows].iter().fold(0, |a, &b| a.max(b));
+        let columns = (screen.place(begin), screen.place(end - 1));
+        let row = |row: usize| screen.place(first + row as u32);
+        let stretch = shaded.ball.stretch(columns, (row(low), row(high)));
+        let casters = shaded.casters.iter().enumerate();
+        let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+        near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 
     /// Of the rows from `first` on.

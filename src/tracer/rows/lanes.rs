@@ -155,11 +155,13 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>
             // An error is not −0, and so is no sum with one.
             let upper = narrow::<S>(low_upper, high_upper);
             put::<S>(samples, &upper);
-            let differ = [0, 1, 2].map(|i| !lower[i].simd_eq(upper[i]));
-            if (differ[0] | differ[1] | differ[2]).any_true() {
-                for (i, differ) in differ.iter().enumerate() {
-                    unknown |= pixels_of::<S>(i, differ.to_bitmask());
-                }
+            let first_differ = !lower[0].simd_eq(upper[0]);
+            let second_differ = !lower[1].simd_eq(upper[1]);
+            let third_differ = !lower[2].simd_eq(upper[2]);
+            if (first_differ | second_differ | third_differ).any_true() {
+                unknown |= pixels_of::<S>(0, first_differ.to_bitmask());
+                unknown |= pixels_of::<S>(1, second_differ.to_bitmask());
+                unknown |= pixels_of::<S>(2, third_differ.to_bitmask());
             }
             unknown &= !in_shadow;
             run.darken(first..first + here, in_shadow);
@@ -311,9 +313,9 @@ fn shadowed<S: Simd>(
         }
         known[i] |= dark[i];
     }
-    let bits =
-        |masks: [S::mask64s; 2]| masks[0].to_bitmask() | masks[1].to_bitmask() << S::f64s::LEN;
-    (bits(dark), bits(known))
+    let dark = dark[0].to_bitmask() | dark[1].to_bitmask() << S::f64s::LEN;
+    let known = known[0].to_bitmask() | known[1].to_bitmask() << S::f64s::LEN;
+    (dark, known)
 }
 
 /// The ambient part of samples as they lie in memory, less and more than it is by a bound on the errors of all but the highlight.

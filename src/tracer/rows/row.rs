@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::chord::Chord;
+use super::chord::{Chord, bit_of};
 use super::lanes::{self, Run, Shading};
 use super::paint::{self, Paint};
 use super::shape::Screen;
@@ -143,14 +143,14 @@ impl Row<'_> {
         }
         self.mark_written();
         shading.in_reach.clear();
-        if !shaded.casters.is_empty() {
-            let ends = (
-                self.screen.place(columns.0),
-                self.screen.place(columns.1 - 1),
-            );
-            let stretch = shaded.ball.stretch(self.y, ends);
+        if chord.shaders != 0 {
+            let place = |column| self.screen.place(column);
+            let ends = (place(columns.0), place(columns.1 - 1));
+            let stretch = shaded.ball.stretch(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
-            let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+            let near = casters.filter(|(number, caster)| {
+                chord.shaders & bit_of(*number) != 0 && !caster.misses(&stretch)
+            });
             shading.in_reach.extend(near.map(|(number, _)| number));
         }
         let range = columns.0 as usize..columns.1 as usize;
