@@ -98,10 +98,12 @@ impl Case<'_> {
         let m = ball.off.at(self.screen.place(row));
         let light = along(simd, &ball.light, m);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
-            let hits = hits(simd, ball, &light, m, self.screen.place(first));
+            let x = self.screen.place(first);
+            let hits = hits(simd, ball, m, x);
+            let facing = value::<S>(&light, hits.q, hits.s);
             let [deep, shallow] = ball
                 .errors
-                .map(|error| lit(simd, ball, m, &hits, &ambient(simd, ball, error), true));
+                .map(|error| lit(simd, ball, m, x, facing, &ambient(simd, ball, error), true));
             let forms = self
                 .forms
                 .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
@@ -120,7 +122,7 @@ impl Case<'_> {
                 let hit = self.sphere.first_hit(&line).unwrap().unwrap();
                 let shading = &self.view.shading;
                 let terms = shading.terms(&hit.normal).unwrap();
-                let computed = hits.light.as_slice()[lane];
+                let computed = facing.as_slice()[lane];
                 found
                     .light
                     .note(terms.normal_light, computed, ball.light.error);

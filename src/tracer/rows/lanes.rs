@@ -65,6 +65,13 @@ pub(super) struct Run<'r> {
 // given to other functions are not.
 
 impl Run<'_> {
+    /// X of a pixel, and of that as many pixels on as there are f64 lanes.
+    #[inline(always)]
+    fn places<S: Simd>(&self, first: usize) -> [f64; 2] {
+        let x = self.screen.place(self.from + first as u32);
+        [x, x + 3.0 * S::f64s::LEN as f64]
+    }
+
     /// Writes some pixels, those that are in shadow bit by bit.
     #[inline(always)]
     pub(super) fn darken(&mut self, pixels: Range<usize>, in_shadow: u64) {
@@ -98,8 +105,6 @@ impl Run<'_> {
 pub(super) struct Hits<V> {
     pub(super) q: V,
     pub(super) s: V,
-    /// n·l.
-    pub(super) light: V,
 }
 
 /// A linear form along a row.
@@ -121,23 +126,24 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
     let (mut done, mut first) = (0, 0);
-    let mut hits = both_hits(simd, ball, &light, m, run, first);
+    let mut lights = both_lights(simd, ball, &light, m, run, first);
     while done < count {
         // The last vector may lie on part of the one before it.
         let next = (first + width).min(last);
         // A root takes its time: that of the next vector is begun before this one waits for its own.
-        let [low, high] = hits;
+        let [low, high] = lights;
         if next > first {
-            hits = both_hits(simd, ball, &light, m, run, next);
+            lights = both_lights(simd, ball, &light, m, run, next);
         }
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
         let column = run.from + first as u32;
         let end = column + here as u32;
+        let places = run.places::<S>(first);
         let mut in_shadow = 0;
         let mut unknown = 0;
         if asks {
-            let (dark, known) = shadowed(simd, shaded, run, m, [&low, &high]);
+            let (dark, known) = shadowed(simd, shaded, run, m, places, [low, high]);
             in_shadow = dark;
             unknown = !known;
         }
@@ -149,8 +155,8 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>
             let error = ball.errors[usize::from(!is_deep)];
             let is_bright = column < run.bright.1 && end > run.bright.0;
             let ambient = ambient(simd, ball, error);
-            let [low_lower, low_upper] = lit(simd, ball, m, &low, &ambient, is_bright);
-            let [high_lower, high_upper] = lit(simd, ball, m, &high, &ambient, is_bright);
+            let [low_lower, low_upper] = lit(simd, ball, m, places[0], low, &ambient, is_bright);
+            let [high_lower, high_upper] = lit(simd, ball, m, places[1], high, &ambient, is_bright);
             let lower = narrow::<S>(low_lower, high_lower);
             // An error is not −0, and so is no sum with one.
             let upper = narrow::<S>(low_upper, high_upper);
@@ -181,20 +187,21 @@ pub(super) fn shade<S: Simd>(simd: S, shaded: &ShadedBall<'_>, run: &mut Run<'_>
     }
 }
 
-/// The hits of as many pixels as there are f32 lanes.
+/// n·l of as many pixels as there are f32 lanes.
 #[inline(always)]
-fn both_hits<S: Simd>(
+fn both_lights<S: Simd>(
     simd: S,
     ball: &Ball,
     light: &Along<S::f64s>,
     m: f64,
     run: &Run<'_>,
     first: usize,
-) -> [Hits<S::f64s>; 2] {
-    let x = run.screen.place(run.from + first as u32);
+) -> [S::f64s; 2] {
+    let [low, high] = run.places::<S>(first);
+    let (low, high) = (hits(simd, ball, m, low), hits(simd, ball, m, high));
     [
-        hits(simd, ball, light, m, x),
-        hits(simd, ball, light, m, x + 3.0 * S::f64s::LEN as f64),
+        value::<S>(light, low.q, low.s),
+        value::<S>(light, high.q, high.s),
     ]
 }
 
@@ -274,19 +281,13 @@ pub(super) fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S
     s.mul_add(form.out, q.mul_add(form.across, form.row))
 }
 
+/// The hits from X = `x` on.
 #[inline(always)]
-pub(super) fn hits<S: Simd>(
-    simd: S,
-    ball: &Ball,
-    light: &Along<S::f64s>,
-    m: f64,
-    x: f64,
-) -> Hits<S::f64s> {
+pub(super) fn hits<S: Simd>(simd: S, ball: &Ball, m: f64, x: f64) -> Hits<S::f64s> {
     let q = places::<S>(simd, 0) + x - ball.center;
     let squared = S::f64s::splat(simd, ball.squared_radius - m * m);
     let s = q.mul_add(-q, squared).sqrt();
-    let light = value::<S>(light, q, s);
-    Hits { q, s, light }
+    Hits { q, s }
 }
 
 /// Which pixels are in shadow, and of which it is known.
@@ -296,26 +297,28 @@ fn shadowed<S: Simd>(
     shaded: &ShadedBall<'_>,
     run: &Run<'_>,
     m: f64,
-    hits: [&Hits<S::f64s>; 2],
+    places: [f64; 2],
+    lights: [S::f64s; 2],
 ) -> (u64, u64) {
-    let mut dark = [S::mask64s::splat(simd, false); 2];
-    let mut known = [S::mask64s::splat(simd, true); 2];
+    let (mut all_dark, mut all_known) = (0, 0);
     for i in 0..2 {
+        let mut dark = S::mask64s::splat(simd, false);
+        let mut known = S::mask64s::splat(simd, true);
         if !run.is_facing {
             let error = shaded.ball.light.error;
-            dark[i] = hits[i].light.simd_lt(-error);
-            known[i] = dark[i] | hits[i].light.simd_gt(error);
+            dark = lights[i].simd_lt(-error);
+            known = dark | lights[i].simd_gt(error);
         }
+        let hits = hits(simd, &shaded.ball, m, places[i]);
         for &caster in &run.shading.in_reach {
-            let (inside, outside) = behind(simd, &shaded.casters[caster], m, hits[i]);
-            dark[i] |= inside;
-            known[i] &= inside | outside;
+            let (inside, outside) = behind(simd, &shaded.casters[caster], m, &hits);
+            dark |= inside;
+            known &= inside | outside;
         }
-        known[i] |= dark[i];
+        all_dark |= dark.to_bitmask() << (i * S::f64s::LEN);
+        all_known |= (known | dark).to_bitmask() << (i * S::f64s::LEN);
     }
-    let dark = dark[0].to_bitmask() | dark[1].to_bitmask() << S::f64s::LEN;
-    let known = known[0].to_bitmask() | known[1].to_bitmask() << S::f64s::LEN;
-    (dark, known)
+    (all_dark, all_known)
 }
 
 /// The ambient part of samples as they lie in memory, less and more than it is by a bound on the errors of all but the highlight.
@@ -328,25 +331,27 @@ pub(super) fn ambient<S: Simd>(simd: S, ball: &Ball, error: f64) -> [[S::f64s; 3
     ]
 }
 
-/// Samples of pixels in the light as they lie in memory, from below and from above.
+/// Samples of pixels in the light, from X = `x` on, as they lie in memory: from below and from above. `light` is their n·l.
 #[inline(always)]
 pub(super) fn lit<S: Simd>(
     simd: S,
     ball: &Ball,
     m: f64,
-    hits: &Hits<S::f64s>,
+    x: f64,
+    light: S::f64s,
     ambient: &[[S::f64s; 3]; 2],
     is_bright: bool,
 ) -> [[S::f64s; 3]; 2] {
     let [mut lower, mut upper] = *ambient;
-    let light = spread(hits.light.max(0.0));
+    let light = spread(light.max(0.0));
     let diffuse = of_cycle(simd, &ball.color.diffuse);
     for i in 0..3 {
         lower[i] = light[i].mul_add(diffuse[i], lower[i]);
         upper[i] = light[i].mul_add(diffuse[i], upper[i]);
     }
     if let Some(halfway) = ball.halfway.as_ref().filter(|_| is_bright) {
-        let (power, error) = highlight(simd, ball, halfway, m, hits);
+        let hits = hits(simd, ball, m, x);
+        let (power, error) = highlight(simd, ball, halfway, m, &hits);
         // No coefficient is negative.
         let least = spread(power - error);
         let most = spread(power + error);
