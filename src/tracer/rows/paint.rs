@@ -22,10 +22,18 @@ impl Paint {
         }
     }
 
+    pub(super) fn bits(&self) -> Bits {
+        let [red, green, blue] = self.color().map(f32::to_bits);
+        (u64::from(red) << 32 | u64::from(green), blue)
+    }
+
     pub(super) fn color(&self) -> [f32; 3] {
         [self.samples[0], self.samples[1], self.samples[2]]
     }
 }
+
+/// The bits of a colour's three samples.
+pub(super) type Bits = (u64, u32);
 
 /// All paints of a frame, as they are found to be needed.
 pub(super) struct Paints<'f, 'c> {

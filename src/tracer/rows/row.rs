@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::chord::{Chord, bit_of};
 use super::lanes::{self, Run, Shading};
-use super::paint::{self, Paint};
+use super::paint::{self, Bits, Paint};
 use super::shape::Screen;
 use super::solids::ShadedBall;
 use super::{Precision, plain};
@@ -17,15 +17,62 @@ use crate::tracer::ladder::Pixels;
 pub(in crate::tracer) struct Memory {
     /// Whether any of the row's samples has been written since this was last unset.
     pub(in crate::tracer) is_written: bool,
-    filled: Vec<(Columns, [u32; 3])>,
+    /// From the left, in the frame before.
+    filled: Vec<Filled>,
+    /// How many of these lie to the left of what is being filled.
+    passed: usize,
     /// The same of the frame that is being traced.
-    next: Vec<(Columns, [u32; 3])>,
+    next: Vec<Filled>,
+}
+
+/// Columns of one colour.
+#[derive(Clone, Copy)]
+struct Filled {
+    columns: Columns,
+    color: Bits,
 }
 
 impl Memory {
     /// Forgets the row, which others may have written.
     pub(in crate::tracer) fn clear(&mut self) {
         self.filled.clear();
+    }
+
+    /// Fills columns, from the left to the right of the row: calls `write` with those that do not have this colour already.
+    fn fill(&mut self, columns: Columns, color: Bits, mut write: impl FnMut(Columns)) {
+        match self.next.last_mut() {
+            Some(last) if last.columns.1 == columns.0 && last.color == color => {
+                last.columns.1 = columns.1;
+            }
+            _ => self.next.push(Filled { columns, color }),
+        }
+        let (mut from, to) = columns;
+        while let Some(before) = self.filled.get(self.passed)
+            && before.columns.0 < to
+        {
+            if before.color == color && before.columns.1 > from {
+                if before.columns.0 > from {
+                    self.is_written = true;
+                    write((from, before.columns.0));
+                }
+                from = before.columns.1;
+            }
+            if before.columns.1 > to {
+                break;
+            }
+            self.passed += 1;
+        }
+        if from < to {
+            self.is_written = true;
+            write((from, to));
+        }
+    }
+
+    /// The row is written.
+    fn finish(&mut self) {
+        std::mem::swap(&mut self.filled, &mut self.next);
+        self.next.clear();
+        self.passed = 0;
     }
 }
 
@@ -59,35 +106,15 @@ impl Row<'_> {
         if let Some(decisions) = &mut self.decisions {
             decisions[from as usize..to as usize].fill(paint.decision);
         }
-        let Some(memory) = self.memory.take() else {
-            return self.write((from, to), paint);
+        let (level, samples) = (self.level, &mut *self.samples);
+        let mut write = |(from, to): Columns| {
+            let samples = &mut samples[3 * from as usize..3 * to as usize];
+            dispatch!(level, simd => paint::fill(simd, samples, paint));
         };
-        let bits = paint.color().map(f32::to_bits);
-        match memory.next.last_mut() {
-            Some((columns, same)) if columns.1 == from && *same == bits => columns.1 = to,
-            _ => memory.next.push(((from, to), bits)),
+        match &mut self.memory {
+            Some(memory) => memory.fill((from, to), paint.bits(), write),
+            None => write((from, to)),
         }
-        // What lies between runs that had this colour already.
-        let mut begin = from;
-        for &((first, end), before) in &memory.filled {
-            if before == bits && first < to && end > begin {
-                if first > begin {
-                    memory.is_written = true;
-                    self.write((begin, first), paint);
-                }
-                begin = end;
-            }
-        }
-        if begin < to {
-            memory.is_written = true;
-            self.write((begin, to), paint);
-        }
-        self.memory = Some(memory);
-    }
-
-    fn write(&mut self, (from, to): Columns, paint: &Paint) {
-        let samples = &mut self.samples[3 * from as usize..3 * to as usize];
-        dispatch!(self.level, simd => paint::fill(simd, samples, paint));
     }
 
     /// A sphere. What is left in doubt is in `shading`.
@@ -182,8 +209,7 @@ impl Row<'_> {
     /// The row is written.
     pub(super) fn finish(self) -> InDoubt {
         if let Some(memory) = self.memory {
-            std::mem::swap(&mut memory.filled, &mut memory.next);
-            memory.next.clear();
+            memory.finish();
         }
         self.in_doubt
     }
