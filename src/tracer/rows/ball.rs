@@ -47,6 +47,17 @@ impl Form {
         [self.across, self.off, self.out]
     }
 
+    /// A form without a constant, and one.
+    fn plus(self, constant: Bounded) -> Form {
+        let magnitude = constant.value().abs();
+        Form {
+            constant: constant.value(),
+            error: self.error + (constant.error() + 8.0 * U * magnitude) * MORE,
+            magnitude: self.magnitude + magnitude * MORE,
+            ..self
+        }
+    }
+
     /// The part that does not change along a row.
     pub(super) fn of_row(&self, m: f64) -> f64 {
         self.constant + self.off * m
@@ -102,30 +113,36 @@ struct Known {
     across: f64,
     off: f64,
     out: [f64; ZONES],
-}
-
-/// A vector in the axes of q, m and s.
-fn in_axes(vector: Vector<Bounded>) -> [Bounded; 3] {
-    let root = Bounded::exact(109.0).sqrt();
-    let [three, ten] = [3.0, 10.0].map(Bounded::exact);
-    [
-        vector.x,
-        (ten * vector.y - three * vector.z) / root,
-        (three * vector.y + ten * vector.z) / root,
-    ]
+    /// 3/√109 and 10/√109, of which the axes of m and s are made.
+    axes: [Bounded; 2],
 }
 
 impl Known {
+    /// A vector in the axes of q, m and s.
+    fn in_axes(&self, vector: Vector<Bounded>) -> [Bounded; 3] {
+        let [three, ten] = self.axes;
+        [
+            vector.x,
+            ten * vector.y - three * vector.z,
+            three * vector.y + ten * vector.z,
+        ]
+    }
+
     /// vector · n + constant, as a form.
     fn form(&self, constant: Bounded, vector: Vector<Bounded>) -> Form {
-        let factors = in_axes(vector);
+        self.linear_form(vector).plus(constant)
+    }
+
+    /// vector · n, as a form.
+    fn linear_form(&self, vector: Vector<Bounded>) -> Form {
+        let factors = self.in_axes(vector);
         Form {
-            constant: constant.value(),
+            constant: 0.0,
             across: factors[0].value(),
             off: factors[1].value(),
             out: factors[2].value(),
-            error: self.error(constant, &factors, self.out[ZONES - 1]),
-            magnitude: (constant.value().abs() + self.magnitude(&factors)) * MORE,
+            error: self.error(&factors, self.out[ZONES - 1]),
+            magnitude: self.magnitude(&factors) * MORE,
             is_concave: factors[2].sign().ok().map(Ordering::is_ge),
         }
     }
@@ -134,8 +151,8 @@ impl Known {
         factors.iter().map(|f| f.value().abs() * self.radius).sum()
     }
 
-    /// A bound on the error of a form where that of s is at most `out`.
-    fn error(&self, constant: Bounded, factors: &[Bounded; 3], out: f64) -> f64 {
+    /// A bound on the error of a form without a constant where that of s is at most `out`.
+    fn error(&self, factors: &[Bounded; 3], out: f64) -> f64 {
         // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
         let terms = factors.iter().zip([self.across, self.off, out]);
         let carried: f64 = terms
@@ -143,13 +160,13 @@ impl Known {
                 factor.error() * (self.radius + error) + factor.value().abs() * error
             })
             .sum();
-        let rounded = 8.0 * U * (constant.value().abs() + self.magnitude(factors));
-        (constant.error() + carried + rounded) * MORE
+        let rounded = 8.0 * U * self.magnitude(factors);
+        (carried + rounded) * MORE
     }
 
     /// `h` is of length 1, `radius` the sphere's, n the exponent, and below `highlight` nobody sees (n·h)ⁿ.
     fn halfway(&self, h: Vector<Bounded>, radius: Bounded, n: f64, highlight: f64) -> Halfway {
-        let at = in_axes(h).map(|component| component * radius);
+        let at = self.in_axes(h).map(|component| component * radius);
         // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
         // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
         // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
@@ -169,7 +186,7 @@ impl Known {
             [f64::INFINITY, 0.0]
         };
         Halfway {
-            form: self.form(Bounded::exact(0.0), h.divided_by(radius)),
+            form: self.linear_form(h.divided_by(radius)),
             at: at.map(Bounded::value),
             errors,
             least: libm::exp2(1.0 - n),
@@ -213,8 +230,8 @@ pub(super) struct Coefficients<T> {
     pub(super) specular: T,
 }
 
-/// Red, green, blue, red and so on, as samples lie in memory: three vectors of up to 8 lanes.
-pub(super) type Cycle = [f64; 24];
+/// Red, green, blue, red and so on, as samples lie in memory: a vector of up to 8 lanes, from any of the three on.
+pub(super) type Cycle = [f64; 8 + 2];
 
 impl Ball {
     /// `color` is the sphere's, times the reflectance in the mirror.
@@ -233,16 +250,18 @@ impl Ball {
             outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
         let out = DEPTHS.map(|depth| (squared * depth / radius + U * radius) * MORE);
+        let root = Bounded::exact(109.0).sqrt();
+        let axes = [3.0, 10.0].map(|part| Bounded::exact(part) / root);
         let known = Known {
             radius,
             across,
             off: outline.off_error,
             out,
+            axes,
         };
         let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
-        let zero = Bounded::exact(0.0);
         let to_light = unit(shading.to_light_unit());
-        let light = known.form(zero, to_light);
+        let light = known.linear_form(to_light);
         let exponent = shading.exponent();
         let n = f64::from(exponent);
         // (1 − x)ⁿ ≤ e^−nx.
@@ -258,7 +277,7 @@ impl Ball {
         let left_out = if tame { tiny } else { f64::INFINITY };
         let light_errors = known
             .out
-            .map(|out| known.error(zero, &in_axes(to_light), out));
+            .map(|out| known.error(&known.in_axes(to_light), out));
         let mut errors = [0.0_f64; ZONES];
         let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let parts = coefficients.map(|coefficient| coefficient * color);
@@ -332,28 +351,30 @@ impl Ball {
         self.known.form(n.dot(self.at - half_space.at), n)
     }
 
+    /// n × l, component by component, and −n·l, with n of the radius's length: what [`Ball::around`] has in common for all spheres.
+    pub(super) fn beside(&self, to_light: &Direction<Bounded>) -> ([Form; 3], Form) {
+        let l = to_light.vector;
+        let zero = Bounded::exact(0.0);
+        let moment = [
+            Vector::new(zero, l.z, -l.y),
+            Vector::new(-l.z, zero, l.x),
+            Vector::new(l.y, -l.x, zero),
+        ];
+        let form = |vector| self.known.linear_form(vector);
+        (moment.map(form), form(-l))
+    }
+
     /// The components of (hit − c) × l, and (c − hit)·l, for another sphere's centre c.
     pub(super) fn around(
         &self,
         center: Vector<Bounded>,
         to_light: &Direction<Bounded>,
+        ([x, y, z], before): &([Form; 3], Form),
     ) -> ([Form; 3], Form) {
         let l = to_light.vector;
-        let zero = Bounded::exact(0.0);
         let from = self.at - center;
         let at = from.cross(l);
-        // n × l, component by component, as a product with n.
-        let factors = [
-            Vector::new(zero, l.z, -l.y),
-            Vector::new(-l.z, zero, l.x),
-            Vector::new(l.y, -l.x, zero),
-        ];
-        let [x, y, z] = factors;
-        let moment = [
-            self.known.form(at.x, x),
-            self.known.form(at.y, y),
-            self.known.form(at.z, z),
-        ];
-        (moment, self.known.form(-from.dot(l), -l))
+        let moment = [x.plus(at.x), y.plus(at.y), z.plus(at.z)];
+        (moment, before.plus(-from.dot(l)))
     }
 }

@@ -170,7 +170,9 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
         let color = known.0.solid_color(index) * known.2;
         let ball = Ball::new(sphere, &outline, &view.shading, color, false);
         let other = (index + 1) % view.spheres.len();
-        let ([x, y, z], before) = ball.around(view.spheres[other].center, &view.shading.to_light);
+        let to_light = &view.shading.to_light;
+        let beside = ball.beside(to_light);
+        let ([x, y, z], before) = ball.around(view.spheres[other].center, to_light, &beside);
         let case = Case {
             picture: truth.0,
             view: true_view,

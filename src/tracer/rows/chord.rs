@@ -96,9 +96,9 @@ impl AllChords {
         let first = row - within;
         if self.first[number] != Some(first) {
             self.first[number] = Some(first);
-            let mut chords = dispatch!(level, simd => Chords::new(simd, ball, first, screen));
+            let chords = &mut self.chords[number];
+            dispatch!(level, simd => chords.find(simd, ball, first, screen));
             chords.shaders = chords.shaders_of(shaded, first, screen);
-            self.chords[number] = chords;
         }
         self.chords[number].row(within as usize)
     }
@@ -135,6 +135,9 @@ impl Chords {
 
     /// The casters that may throw a shadow on any of the pixels known.
     fn shaders_of(&self, shaded: &ShadedBall<'_>, first: u32, screen: Screen) -> u64 {
+        if shaded.casters.is_empty() {
+            return 0;
+        }
         let [from, to] = &self.known;
         let is_met = |row: &usize| from[*row] < to[*row];
         let (Some(low), Some(high)) = ((0..ROWS).find(is_met), (0..ROWS).rfind(is_met)) else {
@@ -151,11 +154,12 @@ impl Chords {
         near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 
-    /// Of the rows from `first` on.
+    /// Finds all but the casters, of the rows from `first` on.
     #[inline(always)]
-    fn new<S: Simd>(simd: S, ball: &Ball, first: u32, screen: Screen) -> Chords {
-        let mut chords = Chords::NONE;
-        chords.facing.is_concave = ball.light.is_concave == Some(true);
+    fn find<S: Simd>(&mut self, simd: S, ball: &Ball, first: u32, screen: Screen) {
+        self.facing.is_concave = ball.light.is_concave == Some(true);
+        self.facing.settled = 0;
+        self.bright = Chords::NONE.bright;
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, lane) + screen.place(first);
             let m = ball.off.of_rows::<S>(y);
@@ -168,12 +172,12 @@ impl Chords {
             };
             let [least_deep, least] = ball.least;
             let (known, deep) = (rows.chord(least), rows.chord(least_deep));
-            put::<S>(known, &mut chords.known, lane);
-            put::<S>(deep, &mut chords.deep, lane);
+            put::<S>(known, &mut self.known, lane);
+            put::<S>(deep, &mut self.deep, lane);
             if ball.shadows {
                 let (inside, settled) = rows.arc(&ball.light, 0.0, known);
-                put::<S>(inside, &mut chords.facing.inside, lane);
-                chords.facing.settled |= settled.to_bitmask() << lane;
+                put::<S>(inside, &mut self.facing.inside, lane);
+                self.facing.settled |= settled.to_bitmask() << lane;
             }
             if let Some(halfway) = &ball.halfway {
                 // |n − h| is no less than the part of it along m.
@@ -186,11 +190,10 @@ impl Chords {
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
                     let bright = select::<S>(is_near, bright, none);
-                    put::<S>(bright, &mut chords.bright, lane);
+                    put::<S>(bright, &mut self.bright, lane);
                 }
             }
         }
-        chords
     }
 }
 

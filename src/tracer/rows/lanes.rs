@@ -240,7 +240,11 @@ pub(super) fn put<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
         for (i, vector) in vectors.iter().enumerate() {
             vector.store_slice(&mut all[i * width..(i + 1) * width]);
         }
-        samples.copy_from_slice(&all[..samples.len()]);
+        // By constant lengths, which are moves instead of a call.
+        let (pixels, _) = samples.as_chunks_mut::<3>();
+        for (pixel, from) in pixels.iter_mut().zip(all.as_chunks::<3>().0) {
+            *pixel = *from;
+        }
     }
 }
 
@@ -259,10 +263,11 @@ pub(super) fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
 #[inline(always)]
 fn of_cycle<S: Simd>(simd: S, cycle: &Cycle) -> [S::f64s; 3] {
     let width = S::f64s::LEN;
+    let (second, third) = (width % 3, 2 * width % 3);
     [
         S::f64s::from_slice(simd, &cycle[..width]),
-        S::f64s::from_slice(simd, &cycle[width..2 * width]),
-        S::f64s::from_slice(simd, &cycle[2 * width..3 * width]),
+        S::f64s::from_slice(simd, &cycle[second..second + width]),
+        S::f64s::from_slice(simd, &cycle[third..third + width]),
     ]
 }
 

@@ -22,6 +22,13 @@ impl Paint {
         }
     }
 
+    /// A vector of samples, of which the first is so many on from a pixel's first.
+    #[inline(always)]
+    fn from<S: Simd, V: SimdFloat<S, Element = f32>>(&self, simd: S, place: usize) -> V {
+        let channel = place % 3;
+        V::from_slice(simd, &self.samples[channel..channel + V::LEN])
+    }
+
     pub(super) fn bits(&self) -> Bits {
         let [red, green, blue] = self.color().map(f32::to_bits);
         (u64::from(red) << 32 | u64::from(green), blue)
@@ -93,20 +100,27 @@ pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
-    // The first and the last vector lie on part of the others, of which none crosses from one cache line into the next: that takes
-    // twice as long.
+    // The first and the last vector may lie on part of others.
     let last = samples.len() - width;
-    let first = samples.as_ptr().align_offset(4 * width).min(last);
-    V::from_slice(simd, &paint.samples[..width]).store_slice(&mut samples[..width]);
-    let channel = last % 3;
-    let vector = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    paint
+        .from::<S, V>(simd, 0)
+        .store_slice(&mut samples[..width]);
+    let vector = paint.from::<S, V>(simd, last);
     vector.store_slice(&mut samples[last..]);
-    let channel = first % 3;
-    let one = V::from_slice(simd, &paint.samples[channel..channel + width]);
-    let channel = (first + width) % 3;
-    let two = V::from_slice(simd, &paint.samples[channel..channel + width]);
-    let channel = (first + 2 * width) % 3;
-    let three = V::from_slice(simd, &paint.samples[channel..channel + width]);
+    if last <= 3 * width {
+        for place in [width, 2 * width] {
+            if place < last {
+                let vector = paint.from::<S, V>(simd, place);
+                vector.store_slice(&mut samples[place..place + width]);
+            }
+        }
+        return;
+    }
+    // Of all others none crosses from one cache line into the next: that takes twice as long.
+    let first = samples.as_ptr().align_offset(4 * width).min(last);
+    let one = paint.from::<S, V>(simd, first);
+    let two = paint.from::<S, V>(simd, first + width);
+    let three = paint.from::<S, V>(simd, first + 2 * width);
     let mut blocks = samples[first..].chunks_exact_mut(3 * width);
     for block in &mut blocks {
         one.store_slice(&mut block[..width]);

@@ -46,6 +46,11 @@ impl Packed {
         Packed(kind << 32 | u64::from(number))
     }
 
+    /// The same where no columns are open, and otherwise nothing.
+    pub(super) fn if_closed(self, columns: i32) -> Packed {
+        if columns == 0 { self } else { Packed::OPEN }
+    }
+
     pub(super) fn seen(self) -> Seen {
         let number = self.0 as u32;
         match self.0 >> 32 {

@@ -1,5 +1,6 @@
 //! The solids as a frame's rows cross them: seen directly, or in the mirror.
 
+use std::cell::LazyCell;
 use std::ops::Range;
 
 use bumpalo::Bump;
@@ -427,13 +428,14 @@ fn casters_on<'f>(
 ) -> &'f [Caster<'f>] {
     let to_light = view.shading.to_light;
     let own = view.spheres[index].support;
+    let beside = LazyCell::new(|| ball.beside(&to_light));
     let casters = casters.iter().filter_map(|&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
             // A ray leaves its own sphere, also where that is listed twice.
             Some(sphere) if sphere.support == own => None,
             Some(sphere) => {
-                let (moment, before) = ball.around(sphere.center, &to_light);
+                let (moment, before) = ball.around(sphere.center, &to_light, &beside);
                 let reach = to_light.squared_length * sphere.radius.squared();
                 Some(Caster::Ball(
                     arena.alloc(Passing::new(before, moment, reach)),

@@ -172,6 +172,9 @@ impl Column {
     }
 }
 
+/// Where so many crossings change places in a row, it is put in order without asking whether it is.
+const MANY: usize = 8;
+
 /// Whether a border crosses some rows, and how often.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Crosses {
@@ -183,7 +186,7 @@ enum Crosses {
 }
 
 /// A crossing: which of the four of which border.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing(u32);
 
 impl Crossing {
@@ -208,9 +211,9 @@ impl Crossing {
         [Held::Unknown, Held::Yes, Held::Unknown, Held::No][self.0 as usize % 4]
     }
 
-    /// Whether it is one of those where columns end.
-    fn is_end(self) -> bool {
-        self.0 % 4 >= 2
+    /// 1 where columns begin, −1 where they end.
+    fn step(self) -> i32 {
+        if self.0 % 4 < 2 { 1 } else { -1 }
     }
 }
 
@@ -238,6 +241,8 @@ pub(super) struct Sweep {
     crossings: Vec<Crossing>,
     /// What is seen before each of them, and after the last.
     seen: Vec<Packed>,
+    /// The columns of these in that row.
+    here: Vec<u32>,
     /// Bit by bit, the rows in which they come in another order, and those that have columns of which it is not known what is seen.
     disordered: u64,
     wanting: u64,
@@ -250,6 +255,16 @@ pub(super) struct Sweep {
     /// Borders whose crossings are not, or no longer, those in `crossings`.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
+    /// Their new crossings, by their places in the first of the rows.
+    arrivals: Vec<(u32, Crossing)>,
+    /// Where `crossings` and `seen` are made anew.
+    spare: Changed,
+}
+
+#[derive(Default)]
+struct Changed {
+    crossings: Vec<Crossing>,
+    seen: Vec<Packed>,
 }
 
 impl Sweep {
@@ -297,13 +312,15 @@ impl Sweep {
         }
         let row = (row - first) as usize;
         if self.disordered >> row & 1 == 1 {
-            self.order(row);
-            dispatch!(level, simd => self.find_disorder(simd));
+            let changes = self.order(row);
+            if changes > MANY {
+                // So it will be in the next rows.
+                self.disordered = u64::MAX;
+            } else {
+                dispatch!(level, simd => self.find_disorder(simd));
+            }
         }
-        if !self.is_planned {
-            dispatch!(level, simd => self.plan(simd));
-        }
-        if self.wanting >> row & 1 == 1 {
+        if !self.is_planned || self.wanting >> row & 1 == 1 {
             self.look(row, borders, look);
             dispatch!(level, simd => self.plan(simd));
         }
@@ -325,32 +342,32 @@ impl Sweep {
         self.crossings.get(number).copied().unwrap_or(self.end)
     }
 
-    /// The column of a crossing.
-    fn place(&self, crossing: usize, row: usize) -> u32 {
-        self.places[self.crossing(crossing).0 as usize][row]
-    }
-
-    /// Whether there are columns before a crossing, or after the last.
-    fn has_columns(&self, gap: usize, row: usize) -> bool {
-        let from = gap.checked_sub(1);
-        from.map_or(0, |before| self.place(before, row)) < self.place(gap, row)
-    }
-
-    /// Sees to it that the crossings come in the order of a row.
-    fn order(&mut self, row: usize) {
-        for i in 1..self.crossings.len() {
+    /// Sees to it that the crossings come in the order of a row. Returns how often two have changed places.
+    fn order(&mut self, row: usize) -> usize {
+        let place = |crossing: &Crossing| self.places[crossing.0 as usize][row];
+        self.here.clear();
+        self.here.extend(self.crossings.iter().map(place));
+        let mut changes = 0;
+        for i in 1..self.here.len() {
+            let place = self.here[i];
+            if self.here[i - 1] <= place {
+                continue;
+            }
             let crossing = self.crossings[i];
-            let place = self.place(i, row);
             let mut to = i;
-            while to > 0 && self.place(to - 1, row) > place {
+            while to > 0 && self.here[to - 1] > place {
+                self.here[to] = self.here[to - 1];
                 self.crossings[to] = self.crossings[to - 1];
                 // Between the two, one was crossed before, and now the other.
                 self.seen[to] = Packed::OPEN;
                 to -= 1;
-                self.is_planned = false;
+                changes += 1;
             }
+            self.here[to] = place;
             self.crossings[to] = crossing;
         }
+        self.is_planned &= changes == 0;
+        changes
     }
 
     /// What rows show where the crossings are in this order, as far as it is known.
@@ -403,10 +420,13 @@ impl Sweep {
         borders: &AllBorders<'_>,
         mut look: impl FnMut(&Column) -> Seen,
     ) {
+        let mut from = 0;
         for gap in 0..self.seen.len() {
-            if self.seen[gap] == Packed::OPEN && self.has_columns(gap, row) {
+            let to = self.places[self.crossing(gap).0 as usize][row];
+            if self.seen[gap] == Packed::OPEN && from < to {
                 self.seen[gap] = Packed::new(look(&self.column));
             }
+            from = to;
             if let Some(crossing) = self.crossings.get(gap) {
                 let border = crossing.border();
                 let of = borders.of[border];
@@ -453,46 +473,47 @@ impl Sweep {
     /// Takes out the crossings of borders that have changed, and brings in their new ones.
     fn change(&mut self) {
         self.is_planned = false;
-        for &border in &self.changed {
-            self.is_changed[border] = true;
-        }
-        // Crossings that are gone and where columns began, less those where they ended: where these are equal, what was seen still is.
-        let (mut open, mut kept) = (0, 0);
-        let mut before = self.seen[0];
-        for i in 0..self.crossings.len() {
-            let crossing = self.crossings[i];
-            let is_gone = self.is_changed[crossing.border()];
-            if is_gone {
-                open += if crossing.is_end() { -1 } else { 1 };
-            } else {
-                self.crossings[kept] = crossing;
-                self.seen[kept] = before;
-                kept += 1;
-            }
-            if !is_gone || before == Packed::OPEN {
-                before = if open == 0 {
-                    self.seen[i + 1]
-                } else {
-                    Packed::OPEN
-                };
-            }
-        }
-        self.seen[kept] = before;
-        self.crossings.truncate(kept);
-        self.seen.truncate(kept + 1);
+        self.arrivals.clear();
         for border in self.changed.drain(..) {
-            self.is_changed[border] = false;
-            let place = self.places[4 * border][0];
-            let is_before = |crossing: &&Crossing| self.places[crossing.0 as usize][0] <= place;
-            let first = self.crossings.iter().take_while(is_before).count();
-            let outside = self.seen[first];
-            let crossings = Crossing::of(border, self.crosses[border]);
-            for (to, crossing) in (first..).zip(crossings) {
-                let seen = if to == first { outside } else { Packed::OPEN };
-                self.crossings.insert(to, crossing);
-                self.seen.insert(to, seen);
+            self.is_changed[border] = true;
+            for crossing in Crossing::of(border, self.crosses[border]) {
+                let place = self.places[crossing.0 as usize][0];
+                self.arrivals.push((place, crossing));
             }
         }
+        self.arrivals.sort_unstable();
+        let Changed { crossings, seen } = &mut self.spare;
+        crossings.clear();
+        seen.clear();
+        let mut arrivals = self.arrivals.iter().peekable();
+        // How many columns of crossings that are gone, or that have come, begin before here and have not ended. What was seen where there
+        // were none still is where there are none.
+        let (mut gone, mut come) = (0, 0);
+        let mut before = self.seen[0];
+        for i in 0..self.seen.len() {
+            let crossing = self.crossings.get(i);
+            if let Some(crossing) = crossing.filter(|crossing| self.is_changed[crossing.border()]) {
+                gone += crossing.step();
+                if before == Packed::OPEN && gone == 0 {
+                    before = self.seen[i + 1];
+                }
+                continue;
+            }
+            let place = crossing.map_or(u32::MAX, |crossing| self.places[crossing.0 as usize][0]);
+            while let Some((_, arrival)) = arrivals.next_if(|(arrives, _)| *arrives < place) {
+                seen.push(before.if_closed(come));
+                crossings.push(*arrival);
+                come += arrival.step();
+            }
+            seen.push(before.if_closed(come));
+            if let Some(&crossing) = crossing {
+                crossings.push(crossing);
+                before = self.seen[i + 1].if_closed(gone);
+            }
+        }
+        std::mem::swap(&mut self.crossings, crossings);
+        std::mem::swap(&mut self.seen, seen);
+        self.is_changed.fill(false);
     }
 
     /// Finds the rows in which the crossings are not in order.
