@@ -306,7 +306,9 @@ fn shadowed<S: Simd>(
     lights: [S::f64s; 2],
 ) -> (u64, u64) {
     let (mut all_dark, mut all_known) = (0, 0);
-    for i in 0..2 {
+    // Of a short run there may be nothing in the second vector.
+    let vectors = (run.samples.len() / 3).div_ceil(S::f64s::LEN).min(2);
+    for i in 0..vectors {
         let mut dark = S::mask64s::splat(simd, false);
         let mut known = S::mask64s::splat(simd, true);
         if !run.is_facing {
@@ -314,11 +316,13 @@ fn shadowed<S: Simd>(
             dark = lights[i].simd_lt(-error);
             known = dark | lights[i].simd_gt(error);
         }
-        let hits = hits(simd, &shaded.ball, m, places[i]);
-        for &caster in &run.shading.in_reach {
-            let (inside, outside) = behind(simd, &shaded.casters[caster], m, &hits);
-            dark |= inside;
-            known &= inside | outside;
+        if !run.shading.in_reach.is_empty() {
+            let hits = hits(simd, &shaded.ball, m, places[i]);
+            for &caster in &run.shading.in_reach {
+                let (inside, outside) = behind(simd, &shaded.casters[caster], m, &hits);
+                dark |= inside;
+                known &= inside | outside;
+            }
         }
         all_dark |= dark.to_bitmask() << (i * S::f64s::LEN);
         all_known |= (known | dark).to_bitmask() << (i * S::f64s::LEN);

@@ -56,21 +56,25 @@ impl Spans {
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
 
-    /// Puts the runs without columns where a neighbouring row's run begins, if one has any.
+    /// Puts the runs without columns where the next row's run begins that has some, if there are any.
     pub(super) fn put_empty_beside(&mut self) {
-        if self.filled == ALL {
+        let mut empty = !self.filled & ALL;
+        if empty == ALL {
             return;
         }
-        let mut place = None;
-        // Upward, and then downward for those that have none below them.
-        for row in (0..ROWS).chain((0..ROWS).rev()) {
-            if self.filled >> row & 1 == 1 {
-                place = Some(self.possible[0][row]);
-            } else if let Some(place) = place {
-                for ends in [&mut self.possible, &mut self.certain] {
-                    (ends[0][row], ends[1][row]) = (place, place);
-                }
+        while empty != 0 {
+            let row = empty.trailing_zeros();
+            let (below, above) = (self.filled & ((1 << row) - 1), self.filled >> row);
+            let next = if below == 0 {
+                row + above.trailing_zeros()
+            } else {
+                below.ilog2()
+            };
+            let place = self.possible[0][next as usize];
+            for ends in [&mut self.possible, &mut self.certain] {
+                (ends[0][row as usize], ends[1][row as usize]) = (place, place);
             }
+            empty &= empty - 1;
         }
     }
 }
