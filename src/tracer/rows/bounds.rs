@@ -7,8 +7,11 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::ball::{Ball, Form};
+use super::chord::{Chord, Chords};
 use super::lanes::{along, ambient, hits, lit, value};
+use super::row::Columns;
 use super::shape::{Ellipse, Screen};
+use super::span::ROWS;
 use crate::number::{Bounded, DoubleDouble, Real};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -76,6 +79,60 @@ struct Found {
     highlight: Largest,
     /// The forms that tell shadows.
     forms: Largest,
+    chords: Chorded,
+}
+
+/// Pixels that are hit deep enough to be shaded.
+#[derive(Default)]
+struct Chorded {
+    all: usize,
+    /// Those that a row says to be known, of these those that it says to face the light or not, and those it says may have a highlight.
+    known: usize,
+    settled: usize,
+    bright: usize,
+    /// Those that have one.
+    highlight: usize,
+}
+
+impl Chorded {
+    /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no highlight to see.
+    fn note(&mut self, chord: &Chord, column: u32, light: f64, halfway: Option<f64>, least: f64) {
+        let is_in = |columns: Columns| columns.0 <= column && column < columns.1;
+        self.all += 1;
+        if !is_in(chord.known) {
+            return;
+        }
+        self.known += 1;
+        if let Some((inside, inside_faces)) = chord.facing {
+            self.settled += 1;
+            // As far as a double-double tells.
+            if light.abs() > 1e-25 {
+                let faces = is_in(inside) == inside_faces;
+                assert_eq!(faces, light > 0.0, "column {column}: n·l = {light:e}");
+            }
+        }
+        self.bright += usize::from(is_in(chord.bright));
+        if halfway.is_some_and(|halfway| halfway > least) {
+            self.highlight += 1;
+            assert!(is_in(chord.bright), "column {column}: n·h = {halfway:?}");
+        }
+    }
+
+    /// Few pixels are left for others to ask.
+    fn expect(&self) {
+        assert!(self.highlight > 1000 && self.settled > 1000);
+        let missed = [self.all - self.known, self.known - self.settled];
+        assert!(
+            missed.iter().all(|&missed| missed < self.all / 50),
+            "{missed:?}"
+        );
+        assert!(
+            self.bright < 2 * self.highlight,
+            "{} of {}",
+            self.bright,
+            self.highlight
+        );
+    }
 }
 
 /// A sphere as rows shade it, and what its pixels are in truth.
@@ -97,6 +154,10 @@ impl Case<'_> {
         let ball = &self.ball;
         let m = ball.off.at(self.screen.place(row));
         let light = along(simd, &ball.light, m);
+        let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
+        let mut chords = Chords::NONE;
+        chords.find(simd, ball, below, self.screen);
+        let chord = chords.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.screen.place(first);
             let hits = hits(simd, ball, m, x);
@@ -126,6 +187,13 @@ impl Case<'_> {
                 found
                     .light
                     .note(terms.normal_light, computed, ball.light.error);
+
+                let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
+                let facing = terms.normal_light.to_f64();
+                let column = first + lane as u32;
+                found
+                    .chords
+                    .note(&chord, column, facing, halfway, ball.highlight);
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);
@@ -168,7 +236,7 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
     for (index, sphere) in view.spheres.iter().enumerate() {
         let outline = Ellipse::outline(sphere.center, sphere.radius, screen);
         let color = known.0.solid_color(index) * known.2;
-        let ball = Ball::new(sphere, &outline, &view.shading, color, false);
+        let ball = Ball::new(sphere, &outline, &view.shading, color, true);
         let other = (index + 1) % view.spheres.len();
         let to_light = &view.shading.to_light;
         let beside = ball.beside(to_light);
@@ -184,7 +252,10 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
             forms: [x, y, z, before],
         };
         for row in (0..SIZE).step_by(3) {
-            dispatch!(Level::new(), simd => case.check(simd, row, found));
+            // With multiplications and additions at once, if there are any, and without.
+            for level in [Level::new(), Level::baseline()] {
+                dispatch!(level, simd => case.check(simd, row, found));
+            }
         }
     }
 }
@@ -232,4 +303,5 @@ fn every_error_is_within_its_bound() {
     found.forms.expect("other linear forms");
     found.dull.expect("channels");
     found.highlight.expect("channels with a highlight");
+    found.chords.expect();
 }

@@ -105,7 +105,7 @@ impl AllChords {
 }
 
 impl Chords {
-    const NONE: Chords = Chords {
+    pub(super) const NONE: Chords = Chords {
         known: [[0; ROWS]; 2],
         deep: [[0; ROWS]; 2],
         facing: Arcs {
@@ -117,7 +117,8 @@ impl Chords {
         shaders: 0,
     };
 
-    fn row(&self, row: usize) -> Chord {
+    /// In one of the rows.
+    pub(super) fn row(&self, row: usize) -> Chord {
         let of = |runs: &Runs| (runs[0][row], runs[1][row]);
         let Arcs {
             inside,
@@ -156,7 +157,7 @@ impl Chords {
 
     /// Finds all but the casters, of the rows from `first` on.
     #[inline(always)]
-    fn find<S: Simd>(&mut self, simd: S, ball: &Ball, first: u32, screen: Screen) {
+    pub(super) fn find<S: Simd>(&mut self, simd: S, ball: &Ball, first: u32, screen: Screen) {
         self.facing.is_concave = ball.light.is_concave == Some(true);
         self.facing.settled = 0;
         self.bright = Chords::NONE.bright;
