@@ -366,7 +366,8 @@ impl Tracer {
             Scratch::default(),
         );
         rows.begin(&mut scratch);
-        rows.trace(row, &mut samples, Some(&mut decisions), None, &mut scratch);
+        let only = row..row + 1;
+        rows.trace(only, &mut samples, Some(&mut decisions), None, &mut scratch);
         let place = column as usize;
         let color = std::array::from_fn(|channel| samples[3 * place + channel]);
         let text = pixels.explain(column, row, (decisions[place], color));
@@ -450,9 +451,29 @@ impl Tracer {
         for local in &mut self.local {
             rows.begin(&mut inner(local).scratch);
         }
-        let in_doubt = self.each_row(target, |number, row, scratch| {
-            let memory = row.memory.and_then(<[Memory]>::first_mut);
-            rows.trace(number, row.samples, row.decisions, memory, scratch)
+        let streamed = target.memory.is_none() && size_of_val(target.samples) > stream::PLAIN;
+        let in_doubt = self.each_band(target, |first, band, local| {
+            let Local { scratch, row, .. } = local;
+            if !streamed {
+                let end = first + (band.samples.len() / (3 * size as usize)) as u32;
+                let Target {
+                    samples,
+                    decisions,
+                    memory,
+                    ..
+                } = band;
+                return rows.trace(first..end, samples, decisions, memory, scratch);
+            }
+            let mut in_doubt = InDoubt::default();
+            for (number, target) in (first..).zip(band.split(1)) {
+                row.resize(target.samples.len(), 0.0);
+                let only = number..number + 1;
+                let of_row = rows.trace(only, row, target.decisions, None, scratch);
+                in_doubt = in_doubt.and(of_row);
+                stream::copy(row, target.samples);
+            }
+            stream::finish();
+            in_doubt
         });
         self.progress.set(size);
         in_doubt
@@ -460,53 +481,36 @@ impl Tracer {
 
     fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
         let progress = self.progress();
-        self.each_row(target, |number, row, _| {
-            if let Some(memory) = row.memory.and_then(<[Memory]>::first_mut) {
-                memory.is_written = true;
-            }
+        self.each_band(target, |first, band, _| {
             let mut in_doubt = InDoubt::default();
-            let mut decisions = row.decisions.into_iter().flatten();
-            for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
-                let ((decision, color), rung) = pixels.pixel(column as u32, number);
-                in_doubt.count(rung);
-                sample.copy_from_slice(&color);
-                if let Some(place) = decisions.next() {
-                    *place = decision;
+            for (number, row) in (first..).zip(band.split(1)) {
+                if let Some(memory) = row.memory.and_then(<[Memory]>::first_mut) {
+                    memory.is_written = true;
                 }
+                let mut decisions = row.decisions.into_iter().flatten();
+                for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
+                    let ((decision, color), rung) = pixels.pixel(column as u32, number);
+                    in_doubt.count(rung);
+                    sample.copy_from_slice(&color);
+                    if let Some(place) = decisions.next() {
+                        *place = decision;
+                    }
+                }
+                progress.add_row();
             }
-            progress.add_row();
             in_doubt
         })
     }
 
-    /// Traces every row, on all threads: `trace` gets its number and where it goes.
-    fn each_row(
+    /// Traces bands of rows on all threads, or all rows as one on one thread: `trace` gets the number of a band's first row, and where the band goes.
+    fn each_band(
         &mut self,
         target: Target<'_>,
-        trace: impl Fn(u32, Target<'_>, &mut Scratch) -> InDoubt + Sync,
+        trace: impl Fn(u32, Target<'_>, &mut Local) -> InDoubt + Sync,
     ) -> InDoubt {
-        let streamed = target.memory.is_none() && size_of_val(target.samples) > stream::PLAIN;
-        let band = |first: usize, band: Target<'_>, local: &mut Local| {
-            for (row, target) in band.split(1).enumerate() {
-                let number = (first + row) as u32;
-                let in_doubt = if streamed {
-                    let Local { scratch, row, .. } = &mut *local;
-                    row.resize(target.samples.len(), 0.0);
-                    let buffered = Target {
-                        samples: row,
-                        ..target
-                    };
-                    let in_doubt = trace(number, buffered, scratch);
-                    stream::copy(row, target.samples);
-                    in_doubt
-                } else {
-                    trace(number, target, &mut local.scratch)
-                };
-                local.in_doubt = local.in_doubt.and(in_doubt);
-            }
-            if streamed {
-                stream::finish();
-            }
+        let band = |number: usize, band: Target<'_>, local: &mut Local| {
+            let in_doubt = trace((number * BAND) as u32, band, local);
+            local.in_doubt = local.in_doubt.and(in_doubt);
         };
         match &mut self.local[..] {
             [local] => band(0, target, inner(local)),
@@ -514,7 +518,7 @@ impl Tracer {
             locals => self
                 .pool
                 .share(target.split(BAND), |thread, number, target| {
-                    band(number * BAND, target, &mut lock(&locals[thread]));
+                    band(number, target, &mut lock(&locals[thread]));
                 }),
         }
         let in_doubt = |local: &mut Mutex<Local>| std::mem::take(&mut inner(local).in_doubt);

@@ -57,6 +57,8 @@ mod solids;
 mod span;
 mod sweep;
 
+use std::ops::Range;
+
 use bumpalo::Bump;
 use fearless_simd::Level;
 
@@ -195,39 +197,56 @@ impl<'f, P: Lines> Rows<'f, P> {
         scratch.shade.chords.begin(self.balls);
     }
 
-    /// Traces a row into its samples, and its decisions where they are asked for. How many pixels double-doubles and arbitrary
-    /// precision had to settle. `scratch` is prepared for the frame. With a `memory` of the row, which holds for `samples`, only what differs is written.
+    /// Traces neighbouring rows into their samples, and their decisions where they are asked for. How many pixels double-doubles and
+    /// arbitrary precision had to settle. `scratch` is prepared for the frame. With a `memory` of the rows, which holds for `samples`, only
+    /// what differs is written.
     pub(super) fn trace(
         &self,
-        number: u32,
+        rows: Range<u32>,
         samples: &mut [f32],
         decisions: Option<&mut [Decision]>,
-        memory: Option<&mut Memory>,
+        memory: Option<&mut [Memory]>,
         scratch: &mut Scratch,
     ) -> InDoubt {
-        let screen = self.screen;
         let mut row = Row {
             level: self.level,
             precision: self.precision,
-            screen,
-            number,
-            y: screen.place(number),
+            screen: self.screen,
+            first: rows.start,
+            number: rows.start,
+            y: 0.0,
             samples,
             decisions,
             memory,
+            pending: None,
             in_doubt: InDoubt::default(),
         };
-        if let Some(quadrants) = &self.quadrants {
-            // Code 2-1 knows two kinds of column.
-            let middle = (screen.size / 2 + 1).min(screen.size);
-            for columns in [(0, middle), (middle, screen.size)] {
-                if columns.0 < columns.1 {
-                    let paint = quadrants[usize::from(quadrant(columns.0, number, screen.size))];
-                    row.fill(columns, &self.paints[paint]);
-                }
+        for number in rows {
+            row.number = number;
+            row.y = self.screen.place(number);
+            match &self.quadrants {
+                Some(quadrants) => self.trace_quadrants(&mut row, quadrants),
+                None => self.trace_row(&mut row, scratch),
             }
-            return row.finish();
+            row.finish();
         }
+        row.finish_all()
+    }
+
+    /// Code 2-1, which knows two kinds of column.
+    fn trace_quadrants<'r>(&'r self, row: &mut Row<'r>, quadrants: &[PaintNumber; 4]) {
+        let size = self.screen.size;
+        let middle = (size / 2 + 1).min(size);
+        for columns in [(0, middle), (middle, size)] {
+            if columns.0 < columns.1 {
+                let paint = quadrants[usize::from(quadrant(columns.0, row.number, size))];
+                row.fill(columns, &self.paints[paint]);
+            }
+        }
+    }
+
+    fn trace_row<'r>(&'r self, row: &mut Row<'r>, scratch: &mut Scratch) {
+        let screen = self.screen;
         let Scratch {
             sweep,
             plan,
@@ -239,24 +258,23 @@ impl<'f, P: Lines> Rows<'f, P> {
             sweep.forget();
         }
         let look = |column: &Column| self.seen(column, plan);
-        sweep.enter(number, &self.borders, self.level, screen, look);
+        sweep.enter(row.number, &self.borders, self.level, screen, look);
         let mut from = 0;
         for part in 0..sweep.len() {
-            let (to, seen) = sweep.part(part, number);
+            let (to, seen) = sweep.part(part, row.number);
             match seen {
                 // A part that other rows have.
                 _ if from == to => {}
-                Seen::Only(shows) => self.write(&mut row, (from, to), shows, shade),
+                Seen::Only(shows) => self.write(row, (from, to), shows, shade),
                 Seen::First(_) => {
                     self.settle(plan, seen, row.y, (from, to), settled);
                     for (columns, shows) in settled.drain(..) {
-                        self.write(&mut row, columns, shows, shade);
+                        self.write(row, columns, shows, shade);
                     }
                 }
             }
             from = to;
         }
-        row.finish()
     }
 
     /// What is seen in a column, and in its neighbours up to the next crossing.
@@ -405,7 +423,7 @@ impl<'f, P: Lines> Rows<'f, P> {
     }
 
     /// Columns that all show the same.
-    fn write(&self, row: &mut Row<'_>, columns: Columns, shows: Show, shade: &mut Shade) {
+    fn write<'r>(&'r self, row: &mut Row<'r>, columns: Columns, shows: Show, shade: &mut Shade) {
         match shows {
             Show::Paint(paint) => row.fill(columns, &self.paints[paint]),
             Show::Ball { mirrored, solid } => {

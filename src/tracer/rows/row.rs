@@ -1,5 +1,7 @@
 //! A row that is being written, and what is remembered of it for the next frame.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
 use super::chord::{Chord, bit_of};
@@ -76,18 +78,23 @@ impl Memory {
     }
 }
 
-/// A row that is being written.
+/// A row that is being written, of some neighbouring ones.
 pub(super) struct Row<'r> {
     pub(super) level: Level,
     pub(super) precision: Precision,
     pub(super) screen: Screen,
+    /// The first of the rows.
+    pub(super) first: u32,
     pub(super) number: u32,
     /// Y.
     pub(super) y: f64,
+    /// Those of all the rows.
     pub(super) samples: &'r mut [f32],
     pub(super) decisions: Option<&'r mut [Decision]>,
     /// What the samples are from the frame before, where only what differs is to be written.
-    pub(super) memory: Option<&'r mut Memory>,
+    pub(super) memory: Option<&'r mut [Memory]>,
+    /// Pixels that are still to be filled. What ends a row mostly begins the next, and they lie side by side.
+    pub(super) pending: Option<(Range<usize>, &'r Paint)>,
     pub(super) in_doubt: InDoubt,
 }
 
@@ -100,20 +107,54 @@ fn both(columns: Columns, others: Columns) -> Columns {
     (from, others.1.clamp(from, columns.1))
 }
 
-impl Row<'_> {
+impl<'r> Row<'r> {
+    /// Where columns lie among the pixels of all rows.
+    fn pixels(&self, (from, to): Columns) -> Range<usize> {
+        let start = (self.number - self.first) as usize * self.screen.size as usize;
+        start + from as usize..start + to as usize
+    }
+
+    /// What is remembered of the row.
+    fn memory(&mut self) -> Option<&mut Memory> {
+        let place = (self.number - self.first) as usize;
+        self.memory.as_mut().map(|memory| &mut memory[place])
+    }
+
     /// One colour in all columns.
-    pub(super) fn fill(&mut self, (from, to): Columns, paint: &Paint) {
+    pub(super) fn fill(&mut self, columns: Columns, paint: &'r Paint) {
+        let pixels = self.pixels(columns);
         if let Some(decisions) = &mut self.decisions {
-            decisions[from as usize..to as usize].fill(paint.decision);
+            decisions[pixels].fill(paint.decision);
         }
-        let (level, samples) = (self.level, &mut *self.samples);
-        let mut write = |(from, to): Columns| {
-            let samples = &mut samples[3 * from as usize..3 * to as usize];
-            dispatch!(level, simd => paint::fill(simd, samples, paint));
-        };
-        match &mut self.memory {
-            Some(memory) => memory.fill((from, to), paint.bits(), write),
-            None => write((from, to)),
+        // It is lent to the memory, which calls back.
+        match self.memory.take() {
+            Some(memory) => {
+                let place = (self.number - self.first) as usize;
+                let write = |columns| self.put(columns, paint);
+                memory[place].fill(columns, paint.bits(), write);
+                self.memory = Some(memory);
+            }
+            None => self.put(columns, paint),
+        }
+    }
+
+    fn put(&mut self, columns: Columns, paint: &'r Paint) {
+        let pixels = self.pixels(columns);
+        match &mut self.pending {
+            Some((pending, same)) if pending.end == pixels.start && same.bits() == paint.bits() => {
+                pending.end = pixels.end;
+            }
+            _ => {
+                self.put_pending();
+                self.pending = Some((pixels, paint));
+            }
+        }
+    }
+
+    fn put_pending(&mut self) {
+        if let Some((pixels, paint)) = self.pending.take() {
+            let samples = &mut self.samples[3 * pixels.start..3 * pixels.end];
+            dispatch!(self.level, simd => paint::fill(simd, samples, paint));
         }
     }
 
@@ -123,7 +164,7 @@ impl Row<'_> {
         columns: Columns,
         shaded: &ShadedBall<'_>,
         chord: &Chord,
-        in_shadow: &Paint,
+        in_shadow: &'r Paint,
         shading: &mut Shading,
     ) {
         let known = both(columns, chord.known);
@@ -180,7 +221,7 @@ impl Row<'_> {
             });
             shading.in_reach.extend(near.map(|(number, _)| number));
         }
-        let range = columns.0 as usize..columns.1 as usize;
+        let range = self.pixels(columns);
         let mut run = Run {
             screen: self.screen,
             y: self.y,
@@ -201,16 +242,21 @@ impl Row<'_> {
     }
 
     fn mark_written(&mut self) {
-        if let Some(memory) = &mut self.memory {
+        if let Some(memory) = self.memory() {
             memory.is_written = true;
         }
     }
 
     /// The row is written.
-    pub(super) fn finish(self) -> InDoubt {
-        if let Some(memory) = self.memory {
+    pub(super) fn finish(&mut self) {
+        if let Some(memory) = self.memory() {
             memory.finish();
         }
+    }
+
+    /// All rows are.
+    pub(super) fn finish_all(mut self) -> InDoubt {
+        self.put_pending();
         self.in_doubt
     }
 
@@ -219,7 +265,7 @@ impl Row<'_> {
         for column in columns {
             self.mark_written();
             let ((decision, color), rung) = pixels.pixel(column, self.number);
-            let place = column as usize;
+            let place = self.pixels((column, column)).start;
             self.samples[3 * place..3 * place + 3].copy_from_slice(&color);
             if let Some(decisions) = &mut self.decisions {
                 decisions[place] = decision;
