@@ -49,7 +49,8 @@
 //! - No general ray tracer: projection is parallel, light comes from one direction, the surface mirrors once. What the scene
 //!   does not need is not modelled.
 //! - No platform libm: sines and cosines are correctly rounded, highlights use arithmetic only, or `libm` in plain Rust.
-//! - No fused multiply-add: it would give other bits, or be slow, where the processor has none.
+//! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which nothing but what is certain gets into a
+//!   picture, uses it where the processor has it.
 //! - No tree over the solids: rays are parallel, so every solid knows the rows and columns that it can touch.
 
 pub mod camera;
