@@ -62,12 +62,17 @@
 //! wrongly.
 
 mod ball;
+mod border;
 #[cfg(test)]
 mod bounds;
 mod chord;
+mod column;
+mod ellipse;
+mod half_plane;
 mod lanes;
 mod order;
 mod paint;
+mod place;
 mod plain;
 mod plan;
 mod row;
@@ -90,16 +95,20 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::stage::Stage;
+use border::{AllBorders, Border, Borders};
 use chord::AllChords;
+use column::Column;
+use half_plane::{HalfPlane, Sheet};
 use lanes::Shading;
 use paint::{AllPaints, PaintNumber, Paints};
+use place::Screen;
 use plan::{Contest, Plan, Seen, Show};
 pub(super) use row::Memory;
 use row::{Columns, Row};
-use shape::{HalfPlane, MORE, Screen, Shape, Sheet, U};
+use shape::{MORE, Shape, U};
 use solids::{Body, Facet, Pair, Solids};
 pub(super) use span::ROWS;
-use sweep::{AllBorders, Border, Borders, Column, Sweep};
+use sweep::Sweep;
 
 /// A frame, ready to be traced row by row.
 pub(super) struct Rows<'f, P> {

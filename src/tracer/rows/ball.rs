@@ -9,7 +9,8 @@
 
 use std::cmp::Ordering;
 
-use super::shape::{Ellipse, MORE, Off, U};
+use super::ellipse::{Ellipse, Off};
+use super::shape::{MORE, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::shading::Shading;

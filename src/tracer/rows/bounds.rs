@@ -8,9 +8,10 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use super::ball::{Ball, Form};
 use super::chord::{Chord, Chords};
+use super::ellipse::Ellipse;
 use super::lanes::{along, ambient, hits, lit, value};
+use super::place::Screen;
 use super::row::Columns;
-use super::shape::{Ellipse, Screen};
 use super::span::ROWS;
 use crate::number::{Bounded, DoubleDouble, Real};
 use crate::scene::Scene;

@@ -13,8 +13,9 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::ball::{Ball, Form};
+use super::place::{Screen, in_columns, places, put_columns};
 use super::row::Columns;
-use super::shape::{Screen, U, in_columns, places, put_columns};
+use super::shape::U;
 use super::solids::ShadedBall;
 use super::span::ROWS;
 

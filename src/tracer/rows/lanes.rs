@@ -7,8 +7,9 @@ use fearless_simd::prelude::*;
 
 use super::ball::{Ball, Cycle, Form, Halfway, Stretch};
 use super::paint::{Paint, fill};
+use super::place::{Screen, places};
 use super::row::Columns;
-use super::shape::{MORE, Screen, U, places};
+use super::shape::{MORE, U};
 use super::solids::ShadedBall;
 use crate::number::Bounded;
 use crate::tracer::decision::Decision;

@@ -7,7 +7,7 @@ use fearless_simd::{Level, dispatch};
 use super::chord::{Chord, bit_of};
 use super::lanes::{self, Run, Shading};
 use super::paint::{self, Bits, Paint};
-use super::shape::Screen;
+use super::place::Screen;
 use super::solids::ShadedBall;
 use super::{Precision, plain};
 use crate::tracer::InDoubt;

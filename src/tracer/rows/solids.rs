@@ -8,11 +8,14 @@ use bumpalo::collections::Vec as Growing;
 
 use super::Parts;
 use super::ball::Ball;
+use super::border::Border;
+use super::ellipse::{Ellipse, Off};
+use super::half_plane::{HalfPlane, Sheet};
 use super::lanes::{Caster, Passing};
 use super::order::Order;
 use super::paint::PaintNumber;
-use super::shape::{Ellipse, HalfPlane, MORE, Off, Screen, Shape, Sheet, U};
-use super::sweep::Border;
+use super::place::Screen;
+use super::shape::{MORE, Shape, U};
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Support};
 use crate::stage::Stage;

@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::shape::put_columns;
+use super::place::put_columns;
 
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;

@@ -1,0 +1,217 @@
+//! Pixels within an ellipse: a sphere's outline, or the shadow of one.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::half_plane::Sheet;
+use super::place::{Screen, in_columns};
+use super::shape::{MORE, NOWHERE, Reaches, U};
+use crate::number::{Bounded, Real};
+use crate::tracer::vector::Vector;
+
+/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
+/// chord in every row.
+pub(super) struct Ellipse {
+    /// The middle of the chord at Y = 0, and how it moves with Y.
+    center: (f64, f64),
+    pub(super) off: Off,
+    pub(super) squared_radius: f64,
+    /// Beyond this |m| no row is crossed.
+    limit: f64,
+    /// A bound on the error of m, and of half the chord, squared.
+    pub(super) off_error: f64,
+    pub(super) chord_error: f64,
+    /// A bound on the error of an end of the chord in columns, apart from that.
+    slack: f64,
+    /// Whether all of these are finite; otherwise nothing is known.
+    is_bounded: bool,
+}
+
+/// m as a function of Y: `slope` · (Y − `zero`).
+#[derive(Clone, Copy)]
+pub(super) struct Off {
+    slope: f64,
+    zero: f64,
+}
+
+impl Off {
+    /// m of the row at Y.
+    pub(super) fn at(self, y: f64) -> f64 {
+        self.slope * (y - self.zero)
+    }
+
+    /// The same of as many rows as there are lanes.
+    #[inline(always)]
+    pub(super) fn of_rows<S: Simd>(self, y: S::f64s) -> S::f64s {
+        (y - self.zero) * self.slope
+    }
+}
+
+impl Ellipse {
+    fn new(
+        center: (Bounded, Bounded),
+        off: (Bounded, Bounded),
+        squared_radius: Bounded,
+        screen: Screen,
+    ) -> Ellipse {
+        let reach = screen.reach;
+        let (zero, slope) = (-(off.0 / off.1), off.1);
+        // A linear function of Y in f64: its coefficients' errors, and two roundings.
+        let error = |(a, b): (Bounded, Bounded)| {
+            (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
+                * MORE
+        };
+        let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
+        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one rounding. The product rounds too.
+        let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
+        let shift = zero.error() + U * away;
+        let off_error =
+            (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
+        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the error says, and farther away
+        // because the slope is known to a quarter. Otherwise nothing is known.
+        let known = slope.error() < slope.value().abs() / 4.0;
+        let limit = if known {
+            (radius + off_error) * MORE
+        } else {
+            f64::INFINITY
+        };
+        // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
+        let chord_error = (squared_radius.error()
+            + (2.0 * limit + off_error) * off_error
+            + 2.0 * U * (limit * limit + squared_radius.value().abs()))
+            * MORE;
+        // The chord's half is at most the radius. Its root, the sum with the middle, a third of it and the sum with N/2 round
+        // by less than u of |middle| + radius + N each.
+        let middle = center.0.value().abs() + center.1.value().abs() * reach;
+        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
+        let all = [
+            center.0.value(),
+            center.1.value(),
+            slope.value(),
+            zero.value(),
+            squared_radius.value(),
+            limit,
+            chord_error,
+            slack,
+        ];
+        Ellipse {
+            is_bounded: all.iter().all(|x| x.is_finite()),
+            center: (center.0.value(), center.1.value()),
+            off: Off {
+                slope: slope.value(),
+                zero: zero.value(),
+            },
+            squared_radius: squared_radius.value(),
+            limit,
+            off_error,
+            chord_error,
+            slack,
+        }
+    }
+
+    /// The pixels from whose points on the sheet lines along `direction` meet a sphere: |(p − c) × l|² ≤ |l|² R².
+    pub(super) fn of(
+        (center, radius): (Vector<Bounded>, Bounded),
+        direction: (Vector<Bounded>, Bounded),
+        sheet: &Sheet,
+        screen: Screen,
+    ) -> Ellipse {
+        let (l, squared_length) = direction;
+        let moment = (sheet.origin - center).cross(l);
+        let per_column = sheet.per_column.cross(l);
+        let per_row = sheet.per_row.cross(l);
+        let speed = per_column.squared_length();
+        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
+        let across = l.cross(per_column);
+        let across = across.divided_by(across.length() * speed.sqrt());
+        let middle = |moment: Vector<Bounded>| -(moment.dot(per_column) / speed);
+        Ellipse::new(
+            (middle(moment), middle(per_row)),
+            (moment.dot(across), per_row.dot(across)),
+            squared_length * radius.squared() / speed,
+            screen,
+        )
+    }
+
+    /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10 (Y − c_y) − 3 (Z − c_z))/√109.
+    pub(super) fn outline(center: Vector<Bounded>, radius: Bounded, screen: Screen) -> Ellipse {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let z = Bounded::exact(screen.reach) - center.z;
+        Ellipse::new(
+            (center.x, Bounded::exact(0.0)),
+            ((-(ten * center.y) - three * z) / root, ten / root),
+            radius.squared(),
+            screen,
+        )
+    }
+
+    /// What it has of as many rows as there are lanes.
+    #[inline(always)]
+    pub(super) fn reaches<S: Simd>(&self, simd: S, y: S::f64s, screen: Screen) -> Reaches<S::f64s> {
+        let zero = S::f64s::splat(simd, 0.0);
+        let none = S::f64s::splat(simd, NOWHERE);
+        if !self.is_bounded {
+            let all = S::f64s::splat(simd, f64::from(screen.size));
+            return Reaches {
+                possible: [zero, all],
+                certain: [zero, none],
+            };
+        }
+        let m = self.off.of_rows::<S>(y);
+        let squared = -(m * m) + self.squared_radius;
+        let (most, least) = (squared + self.chord_error, squared - self.chord_error);
+        let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
+        let is_certain = is_met & least.simd_gt(zero);
+        let middle = y * self.center.1 + self.center.0;
+        // No NaN comes here: m is infinite at worst, and then the row is beyond.
+        let half = most.max(zero).sqrt();
+        let from = in_columns::<S>(screen, middle - half) - self.slack;
+        let to = in_columns::<S>(screen, middle + half) + self.slack;
+        let possible = [from, is_met.select(to, none)];
+        let half = least.max(zero).sqrt();
+        let from = in_columns::<S>(screen, middle - half) + self.slack;
+        let to = in_columns::<S>(screen, middle + half) - self.slack;
+        let certain = [from, is_certain.select(to, none)];
+        Reaches { possible, certain }
+    }
+
+    /// The same of the row at Y.
+    #[inline(always)]
+    fn reaches_of_row<S: Simd>(&self, simd: S, y: f64, screen: Screen) -> Reaches<f64> {
+        let y = S::f64s::splat(simd, y);
+        let Reaches { possible, certain } = self.reaches(simd, y, screen);
+        Reaches {
+            possible: possible.map(|place| place.as_slice()[0]),
+            certain: certain.map(|place| place.as_slice()[0]),
+        }
+    }
+
+    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    pub(super) fn decide(&self, x: f64, y: f64, screen: Screen) -> Option<bool> {
+        let Reaches { possible, certain } =
+            dispatch!(Level::baseline(), simd => self.reaches_of_row(simd, y, screen));
+        let column = screen.half + x / 3.0;
+        if column < possible[0] || column > possible[1] {
+            return Some(false);
+        }
+        (certain[0] <= column && column <= certain[1]).then_some(true)
+    }
+
+    /// The rows that it can cross.
+    pub(super) fn rows(&self, screen: Screen) -> (u32, u32) {
+        let ends = [-self.limit, self.limit].map(|m| self.off.zero + m / self.off.slope);
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // A row more on either side is far more than rounding takes.
+        let place = |y: f64| screen.half + y / 3.0;
+        let rows = (
+            screen.ceil(place(low) - 1.0),
+            screen.count(place(high) + 1.0),
+        );
+        if low.is_finite() && high.is_finite() {
+            rows
+        } else {
+            (0, screen.size)
+        }
+    }
+}
