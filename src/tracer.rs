@@ -367,7 +367,15 @@ impl Tracer {
         );
         rows.begin(&mut scratch);
         let only = row..row + 1;
-        rows.trace(only, &mut samples, Some(&mut decisions), None, &mut scratch);
+        let decided = Some(&mut decisions[..]);
+        rows.trace(
+            only,
+            &mut samples,
+            decided,
+            None,
+            &mut scratch,
+            &Progress::default(),
+        );
         let place = column as usize;
         let color = std::array::from_fn(|channel| samples[3 * place + channel]);
         let text = pixels.explain(column, row, (decisions[place], color));
@@ -392,7 +400,7 @@ impl Tracer {
             Kernel::Listing => Some(Listing::new(scene, stage, alpha, n)?),
             _ => None,
         };
-        self.progress.set(0);
+        self.progress.begin();
         let mut arena = std::mem::take(inner(&mut self.arena));
         arena.clear();
         let mut memory = std::mem::take(&mut self.memory);
@@ -452,7 +460,8 @@ impl Tracer {
             rows.begin(&mut inner(local).scratch);
         }
         let streamed = target.memory.is_none() && size_of_val(target.samples) > stream::PLAIN;
-        let in_doubt = self.each_band(target, |first, band, local| {
+        let progress = self.progress();
+        self.each_band(target, |first, band, local| {
             let Local { scratch, row, .. } = local;
             if !streamed {
                 let end = first + (band.samples.len() / (3 * size as usize)) as u32;
@@ -462,21 +471,19 @@ impl Tracer {
                     memory,
                     ..
                 } = band;
-                return rows.trace(first..end, samples, decisions, memory, scratch);
+                return rows.trace(first..end, samples, decisions, memory, scratch, &progress);
             }
             let mut in_doubt = InDoubt::default();
             for (number, target) in (first..).zip(band.split(1)) {
                 row.resize(target.samples.len(), 0.0);
                 let only = number..number + 1;
-                let of_row = rows.trace(only, row, target.decisions, None, scratch);
+                let of_row = rows.trace(only, row, target.decisions, None, scratch, &progress);
                 in_doubt = in_doubt.and(of_row);
                 stream::copy(row, target.samples);
             }
             stream::finish();
             in_doubt
-        });
-        self.progress.set(size);
-        in_doubt
+        })
     }
 
     fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
@@ -496,7 +503,7 @@ impl Tracer {
                         *place = decision;
                     }
                 }
-                progress.add_row();
+                progress.add(1);
             }
             in_doubt
         })

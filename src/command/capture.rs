@@ -3,10 +3,14 @@
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 use firsthit::camera::frame_angle;
 use firsthit::image::{Animation, Format};
+use firsthit::tracer::Progress;
 use firsthit::{Image, Scene, Stage, Tracer};
 use indicatif::{ProgressBar, ProgressFinish};
 
@@ -114,10 +118,19 @@ struct Capture {
 }
 
 impl Capture {
-    fn picture(&mut self, alpha: f64) -> Result<Cow<'_, Image>, Failure> {
+    fn trace(&mut self, alpha: f64) -> Result<(), Failure> {
         self.tracer
             .trace(&self.scene, self.stage, alpha, &mut self.image)?;
+        Ok(())
+    }
+
+    fn passed(&mut self) -> Result<Cow<'_, Image>, Failure> {
         Ok(self.passage.pass(&self.image)?)
+    }
+
+    fn picture(&mut self, alpha: f64) -> Result<Cow<'_, Image>, Failure> {
+        self.trace(alpha)?;
+        self.passed()
     }
 }
 
@@ -133,7 +146,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         passage: Passage::open(arguments.through, size)?,
     };
     match job {
-        Job::Picture { alpha, path } => capture.picture(alpha)?.save(path)?,
+        Job::Picture { alpha, path } => {
+            let progress = capture.tracer.progress();
+            while_watched(size, &progress, || capture.trace(alpha))?;
+            capture.passed()?.save(path)?;
+        }
         Job::Pictures { frames, pattern } => {
             let digits = frames.end().to_string().len();
             for frame in with_progress(frames) {
@@ -159,6 +176,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The number of frames, or the largest number where that is one less.
 fn count(frames: &RangeInclusive<u64>) -> u64 {
     (frames.end() - frames.start()).saturating_add(1)
+}
+
+/// How often a picture that takes its time is asked how far it is; most are there before that.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Traces a picture, with a bar on standard error that grows with its rows, if that is a terminal.
+fn while_watched<T>(size: u32, progress: &Progress, trace: impl FnOnce() -> T) -> T {
+    thread::scope(|scope| {
+        let (traced, is_traced) = mpsc::channel::<()>();
+        let watch = move || {
+            let bar = ProgressBar::new(size.into()).with_finish(ProgressFinish::AndClear);
+            while is_traced.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                bar.set_position(progress.rows().into());
+            }
+        };
+        // Where the system has no thread for it, nobody watches.
+        let _watching = thread::Builder::new().spawn_scoped(scope, watch);
+        let result = trace();
+        drop(traced);
+        result
+    })
 }
 
 /// The frames, with a bar on standard error that grows with them, if that is a terminal.

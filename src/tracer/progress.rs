@@ -9,16 +9,16 @@ use std::sync::atomic::Ordering::Relaxed;
 pub struct Progress(Arc<AtomicU32>);
 
 impl Progress {
-    /// How many rows of the frame are done. The kernels that go pixel by pixel count each row; the others are done at once with all.
+    /// How many rows of the frame are done.
     pub fn rows(&self) -> u32 {
         self.0.load(Relaxed)
     }
 
-    pub(super) fn set(&self, rows: u32) {
-        self.0.store(rows, Relaxed);
+    pub(super) fn begin(&self) {
+        self.0.store(0, Relaxed);
     }
 
-    pub(super) fn add_row(&self) {
-        self.0.fetch_add(1, Relaxed);
+    pub(super) fn add(&self, rows: u32) {
+        self.0.fetch_add(rows, Relaxed);
     }
 }

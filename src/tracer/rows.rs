@@ -91,6 +91,7 @@ use super::arena::Arena;
 use super::decision::Decision;
 use super::ladder::Lines;
 use super::pixel::{self, Picture, quadrant};
+use super::progress::Progress;
 use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
@@ -235,6 +236,7 @@ impl<'f, P: Lines> Rows<'f, P> {
         decisions: Option<&mut [Decision]>,
         memory: Option<&mut [Memory]>,
         scratch: &mut Scratch,
+        progress: &Progress,
     ) -> InDoubt {
         let mut row = Row {
             level: self.level,
@@ -249,6 +251,7 @@ impl<'f, P: Lines> Rows<'f, P> {
             pending: None,
             in_doubt: InDoubt::default(),
         };
+        let mut traced = 0;
         for number in rows {
             row.number = number;
             row.y = self.screen.place(number);
@@ -257,7 +260,12 @@ impl<'f, P: Lines> Rows<'f, P> {
                 None => self.trace_row(&mut row, scratch),
             }
             row.finish();
+            traced += 1;
+            if traced == ROWS as u32 {
+                progress.add(std::mem::take(&mut traced));
+            }
         }
+        progress.add(traced);
         row.finish_all()
     }
 
