@@ -96,42 +96,42 @@ pub(super) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
     }
 }
 
-/// Fills no fewer samples than a vector holds.
+/// Fills no fewer samples than a vector holds. How many there are is not to be foreseen, so no branch depends on that but one and the end
+/// of the loop: vectors may lie on part of others.
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
-    // The first and the last vector may lie on part of others.
     let last = samples.len() - width;
-    paint
-        .from::<S, V>(simd, 0)
-        .store_slice(&mut samples[..width]);
-    let vector = paint.from::<S, V>(simd, last);
-    vector.store_slice(&mut samples[last..]);
-    if last <= 3 * width {
-        for place in [width, 2 * width] {
-            if place < last {
-                let vector = paint.from::<S, V>(simd, place);
-                vector.store_slice(&mut samples[place..place + width]);
-            }
+    put::<S, V>(simd, samples, 0, paint);
+    if last <= 4 * width {
+        for place in [width, 2 * width, 3 * width, last] {
+            put::<S, V>(simd, samples, place.min(last), paint);
         }
         return;
     }
-    // Of all others none crosses from one cache line into the next: that takes twice as long.
+    // Of all others but the last none crosses from one cache line into the next: that takes twice as long.
     let first = samples.as_ptr().align_offset(4 * width).min(last);
     let one = paint.from::<S, V>(simd, first);
     let two = paint.from::<S, V>(simd, first + width);
     let three = paint.from::<S, V>(simd, first + 2 * width);
-    let mut blocks = samples[first..].chunks_exact_mut(3 * width);
-    for block in &mut blocks {
+    for block in samples[first..].chunks_exact_mut(3 * width) {
         one.store_slice(&mut block[..width]);
         two.store_slice(&mut block[width..2 * width]);
         three.store_slice(&mut block[2 * width..]);
     }
-    let rest = blocks.into_remainder();
-    if rest.len() >= width {
-        one.store_slice(&mut rest[..width]);
+    for back in [2 * width, width, 0] {
+        put::<S, V>(simd, samples, last - back, paint);
     }
-    if rest.len() >= 2 * width {
-        two.store_slice(&mut rest[width..2 * width]);
-    }
+}
+
+/// A vector of samples, from one on.
+#[inline(always)]
+fn put<S: Simd, V: SimdFloat<S, Element = f32>>(
+    simd: S,
+    samples: &mut [f32],
+    place: usize,
+    paint: &Paint,
+) {
+    let vector = paint.from::<S, V>(simd, place);
+    vector.store_slice(&mut samples[place..place + V::LEN]);
 }
