@@ -4,8 +4,12 @@ use std::ops::Range;
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, u32x8};
 
 use super::shape::Shape;
+use super::span::ROWS;
+use crate::tracer::arena::collect;
 
 /// What a border is of.
 #[derive(Clone, Copy)]
@@ -21,30 +25,74 @@ pub(super) enum Border {
 
 /// All borders of a frame, as they are found. Each is known by its number.
 pub(super) struct Borders<'f> {
+    arena: &'f Bump,
     shapes: Growing<'f, Shape<'f>>,
-    rows: Growing<'f, (u32, u32)>,
     of: Growing<'f, Border>,
 }
 
 /// The borders of a frame.
 pub(super) struct AllBorders<'f> {
     pub(super) shapes: &'f [Shape<'f>],
-    /// The rows that each can cross.
-    pub(super) rows: &'f [(u32, u32)],
     pub(super) of: &'f [Border],
+    /// What they are of, 64 at a time.
+    pub(super) kinds: &'f [Kinds],
+    /// The first of the rows that each can cross, and what comes after the last; of none where there are fewer than 64.
+    rows: &'f [[[u32; 64]; 2]],
+}
+
+impl AllBorders<'_> {
+    /// Which of 64 borders can cross any of the rows from `first` on, bit by bit.
+    #[inline(always)]
+    pub(super) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
+        let [from, to] = &self.rows[word];
+        let mut reaching = 0;
+        for bit in (0..64).step_by(8) {
+            let from = u32x8::from_slice(simd, &from[bit..bit + 8]);
+            let to = u32x8::from_slice(simd, &to[bit..bit + 8]);
+            let is_reaching = from.simd_lt(first + ROWS as u32) & to.simd_gt(first);
+            reaching |= is_reaching.to_bitmask() << bit;
+        }
+        reaching
+    }
+}
+
+/// What borders are of, bit by bit.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Kinds {
+    pub(super) surface: u64,
+    pub(super) shadows: u64,
+    pub(super) direct: u64,
+    pub(super) mirrored: u64,
+}
+
+impl Kinds {
+    /// Up to 64 borders.
+    fn of(borders: &[Border]) -> Kinds {
+        let mut kinds = Kinds::default();
+        for (bit, border) in borders.iter().enumerate() {
+            let kind = match border {
+                Border::Surface => &mut kinds.surface,
+                Border::ShadowOnSurface => &mut kinds.shadows,
+                Border::Direct(_) => &mut kinds.direct,
+                Border::Mirrored(_) => &mut kinds.mirrored,
+                Border::Detail => continue,
+            };
+            *kind |= 1 << bit;
+        }
+        kinds
+    }
 }
 
 impl<'f> Borders<'f> {
     pub(super) fn new(arena: &'f Bump) -> Self {
         Borders {
+            arena,
             shapes: Growing::new_in(arena),
-            rows: Growing::new_in(arena),
             of: Growing::new_in(arena),
         }
     }
 
     pub(super) fn add(&mut self, shape: Shape<'f>, of: Border) -> usize {
-        self.rows.push(shape.rows());
         self.shapes.push(shape);
         self.of.push(of);
         self.of.len() - 1
@@ -64,9 +112,18 @@ impl<'f> Borders<'f> {
     }
 
     pub(super) fn all(self) -> AllBorders<'f> {
+        let kinds = self.of.chunks(64).map(Kinds::of);
+        let rows = self.shapes.chunks(64).map(|shapes| {
+            let mut rows = [[0; 64]; 2];
+            for (bit, shape) in shapes.iter().enumerate() {
+                (rows[0][bit], rows[1][bit]) = shape.rows();
+            }
+            rows
+        });
         AllBorders {
+            kinds: collect(self.arena, kinds),
+            rows: collect(self.arena, rows),
             shapes: self.shapes.into_bump_slice(),
-            rows: self.rows.into_bump_slice(),
             of: self.of.into_bump_slice(),
         }
     }

@@ -1,30 +1,24 @@
 //! On which side of each border a column is, and so which solids, shadows and mirror images it meets.
+//!
+//! From crossing to crossing only bits change; what they mean is found out where somebody looks.
 
-use super::border::Border;
+use super::border::{AllBorders, Border};
 
-/// Whether a column is one of a border's.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Held {
-    No,
-    Unknown,
-    Yes,
+/// Borders of one kind: whether any of them holds a column, and of which this is not known.
+#[derive(Clone, Copy, Default)]
+struct Any {
+    held: bool,
+    unknown: bool,
 }
 
-/// How many borders hold a column, and of how many it is not known.
-#[derive(Default)]
-struct Count([usize; 3]);
-
-impl Count {
-    fn change(&mut self, before: Held, after: Held) {
-        // Those that hold it not are counted from the first change on, which matters to nobody.
-        self.0[before as usize] = self.0[before as usize].wrapping_sub(1);
-        self.0[after as usize] = self.0[after as usize].wrapping_add(1);
+impl Any {
+    fn add(&mut self, kind: u64, (held, unknown): (u64, u64)) {
+        self.held |= held & kind != 0;
+        self.unknown |= unknown & kind != 0;
     }
 
-    /// Whether any does.
-    fn any(&self) -> Option<bool> {
-        let [_, unknown, yes] = self.0;
-        (yes > 0 || unknown == 0).then_some(yes > 0)
+    fn known(self) -> Option<bool> {
+        (self.held || !self.unknown).then_some(self.held)
     }
 }
 
@@ -32,65 +26,86 @@ impl Count {
 #[derive(Default)]
 pub(super) struct Met {
     solids: Vec<usize>,
-    count: Count,
+    any: Any,
 }
 
 impl Met {
     /// The solids, if they are known.
     pub(super) fn known(&self) -> Option<&[usize]> {
-        (self.count.0[Held::Unknown as usize] == 0).then_some(&self.solids)
+        (!self.any.unknown).then_some(&self.solids)
     }
 
-    fn change(&mut self, solid: usize, before: Held, after: Held) {
-        self.count.change(before, after);
-        let place = self.solids.partition_point(|&other| other < solid);
-        if after == Held::Yes {
-            self.solids.insert(place, solid);
-        } else if before == Held::Yes {
-            self.solids.remove(place);
-        }
+    fn clear(&mut self) {
+        self.solids.clear();
+        self.any = Any::default();
     }
 }
 
 /// What is known of a column.
 #[derive(Default)]
 pub(super) struct Column {
+    /// The borders that hold it, and those of which this is not known: bit by bit, 64 in a word.
+    held: Vec<(u64, u64)>,
     pub(super) direct: Met,
     pub(super) mirrored: Met,
-    surface: Count,
-    shadows: Count,
-    /// Whether it is one of each border's.
-    pub(super) held: Vec<Held>,
+    surface: Any,
+    shadows: Any,
 }
 
 impl Column {
+    /// Goes to where none of a frame's borders holds it.
+    pub(super) fn clear(&mut self, borders: &AllBorders<'_>) {
+        self.held.clear();
+        self.held.resize(borders.kinds.len(), (0, 0));
+    }
+
+    /// Goes across a border: whether that holds it then, and whether this is unknown.
+    pub(super) fn cross(&mut self, border: usize, is_held: bool, is_unknown: bool) {
+        let (held, unknown) = &mut self.held[border / 64];
+        let bit = border % 64;
+        *held = *held & !(1 << bit) | u64::from(is_held) << bit;
+        *unknown = *unknown & !(1 << bit) | u64::from(is_unknown) << bit;
+    }
+
+    /// Finds out what it meets.
+    pub(super) fn look(&mut self, borders: &AllBorders<'_>) {
+        self.direct.clear();
+        self.mirrored.clear();
+        (self.surface, self.shadows) = (Any::default(), Any::default());
+        for (word, (kinds, &bits)) in borders.kinds.iter().zip(&self.held).enumerate() {
+            if bits == (0, 0) {
+                continue;
+            }
+            self.surface.add(kinds.surface, bits);
+            self.shadows.add(kinds.shadows, bits);
+            self.direct.any.add(kinds.direct, bits);
+            self.mirrored.any.add(kinds.mirrored, bits);
+            let mut solids = bits.0 & (kinds.direct | kinds.mirrored);
+            while solids != 0 {
+                match borders.of[64 * word + solids.trailing_zeros() as usize] {
+                    Border::Direct(solid) => self.direct.solids.push(solid),
+                    Border::Mirrored(solid) => self.mirrored.solids.push(solid),
+                    Border::Surface | Border::ShadowOnSurface | Border::Detail => {}
+                }
+                solids &= solids - 1;
+            }
+        }
+    }
+
     /// Whether it meets the surface.
     pub(super) fn surface(&self) -> Option<bool> {
-        self.surface.any()
+        self.surface.known()
     }
 
     /// Whether the surface is in shadow there.
     pub(super) fn surface_in_shadow(&self) -> Option<bool> {
-        self.shadows.any()
+        self.shadows.known()
     }
 
     /// Whether it is one of a border's.
     pub(super) fn holds(&self, border: usize) -> Option<bool> {
-        match self.held[border] {
-            Held::No => Some(false),
-            Held::Unknown => None,
-            Held::Yes => Some(true),
-        }
-    }
-
-    pub(super) fn change(&mut self, border: usize, of: Border, after: Held) {
-        let before = std::mem::replace(&mut self.held[border], after);
-        match of {
-            Border::Surface => self.surface.change(before, after),
-            Border::ShadowOnSurface => self.shadows.change(before, after),
-            Border::Detail => {}
-            Border::Direct(solid) => self.direct.change(solid, before, after),
-            Border::Mirrored(solid) => self.mirrored.change(solid, before, after),
-        }
+        let (held, unknown) = self.held[border / 64];
+        let is = |bits: u64| bits >> (border % 64) & 1 == 1;
+        (!is(unknown)).then_some(is(held))
     }
 }

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
 
 use super::border::AllBorders;
-use super::column::{Column, Held};
+use super::column::Column;
 use super::place::Screen;
 use super::plan::{Packed, Seen};
 use super::span::ROWS;
@@ -46,9 +46,14 @@ impl Crossing {
         self.0 as usize / 4
     }
 
-    /// What is known of the columns after it.
-    fn after(self) -> Held {
-        [Held::Unknown, Held::Yes, Held::Unknown, Held::No][self.0 as usize % 4]
+    /// Whether its border certainly holds the columns after it.
+    fn is_held(self) -> bool {
+        self.0 % 4 == 1
+    }
+
+    /// Whether it is unknown if it does.
+    fn is_unknown(self) -> bool {
+        self.0.is_multiple_of(2)
     }
 
     /// 1 where columns begin, −1 where they end.
@@ -75,6 +80,8 @@ pub(super) struct Sweep {
     first: Option<u32>,
     /// How each border crosses them.
     crosses: Vec<Crosses>,
+    /// Bit by bit, 64 in a word, those that do.
+    crossing: Vec<u64>,
     /// Where, row by row, for each of its four crossings.
     places: Vec<[u32; ROWS]>,
     /// In the order of the row that was entered last.
@@ -114,14 +121,15 @@ impl Sweep {
         self.first = None;
         self.crosses.clear();
         self.crosses.resize(count, Crosses::No);
+        self.crossing.clear();
+        self.crossing.resize(borders.kinds.len(), 0);
         self.places.resize(4 * count + 4, [0; ROWS]);
         // The end of every row is a crossing of no border.
         self.end = Crossing(4 * count as u32);
         self.places[4 * count] = [screen.size; ROWS];
         self.is_changed.clear();
         self.is_changed.resize(count, false);
-        self.column.held.clear();
-        self.column.held.resize(count, Held::No);
+        self.column.clear(borders);
         self.crossings.clear();
         self.forget();
     }
@@ -264,13 +272,13 @@ impl Sweep {
         for gap in 0..self.seen.len() {
             let to = self.places[self.crossing(gap).0 as usize][row];
             if self.seen[gap] == Packed::OPEN && from < to {
+                self.column.look(borders);
                 self.seen[gap] = Packed::new(look(&self.column));
             }
             from = to;
             if let Some(crossing) = self.crossings.get(gap) {
-                let border = crossing.border();
-                let of = borders.of[border];
-                self.column.change(border, of, crossing.after());
+                let (held, unknown) = (crossing.is_held(), crossing.is_unknown());
+                self.column.cross(crossing.border(), held, unknown);
             }
         }
     }
@@ -279,28 +287,23 @@ impl Sweep {
     #[inline(always)]
     fn cross<S: Simd>(&mut self, simd: S, borders: &AllBorders<'_>, first: u32, screen: Screen) {
         self.changed.clear();
-        for (border, &(from, to)) in borders.rows.iter().enumerate() {
-            let mut crosses = Crosses::No;
-            if from < first + ROWS as u32 && to > first {
-                let shape = &borders.shapes[border];
-                let mut spans = shape.cross(simd, first, screen);
-                if !spans.is_certain {
-                    shape.narrow(&mut spans, first, screen);
+        for word in 0..self.crossing.len() {
+            let reaching = borders.reaching(simd, word, first);
+            let mut asked = reaching | self.crossing[word];
+            while asked != 0 {
+                let bit = asked.trailing_zeros() as usize;
+                asked &= asked - 1;
+                let border = 64 * word + bit;
+                let crosses = match reaching >> bit & 1 {
+                    1 => self.cross_by(simd, border, borders, first, screen),
+                    _ => Crosses::No,
+                };
+                if self.crosses[border] != crosses {
+                    self.crosses[border] = crosses;
+                    self.changed.push(border);
+                    let is_crossing = u64::from(crosses != Crosses::No);
+                    self.crossing[word] = self.crossing[word] & !(1 << bit) | is_crossing << bit;
                 }
-                if spans.filled != 0 {
-                    crosses = if spans.is_certain {
-                        Crosses::Certainly
-                    } else {
-                        Crosses::Possibly
-                    };
-                    spans.put_empty_beside();
-                    let ([a, d], [b, c]) = (spans.possible, spans.certain);
-                    self.places[4 * border..4 * border + 4].copy_from_slice(&[a, b, c, d]);
-                }
-            }
-            if self.crosses[border] != crosses {
-                self.crosses[border] = crosses;
-                self.changed.push(border);
             }
         }
         if !self.changed.is_empty() {
@@ -308,6 +311,34 @@ impl Sweep {
         }
         // Columns may have come between other crossings.
         self.is_planned &= self.open.is_empty();
+    }
+
+    /// How a border crosses them.
+    #[inline(always)]
+    fn cross_by<S: Simd>(
+        &mut self,
+        simd: S,
+        border: usize,
+        borders: &AllBorders<'_>,
+        first: u32,
+        screen: Screen,
+    ) -> Crosses {
+        let shape = &borders.shapes[border];
+        let mut spans = shape.cross(simd, first, screen);
+        if !spans.is_certain {
+            shape.narrow(&mut spans, first, screen);
+        }
+        if spans.filled == 0 {
+            return Crosses::No;
+        }
+        spans.put_empty_beside();
+        let ([a, d], [b, c]) = (spans.possible, spans.certain);
+        self.places[4 * border..4 * border + 4].copy_from_slice(&[a, b, c, d]);
+        if spans.is_certain {
+            Crosses::Certainly
+        } else {
+            Crosses::Possibly
+        }
     }
 
     /// Takes out the crossings of borders that have changed, and brings in their new ones.
