@@ -70,6 +70,7 @@ mod column;
 mod ellipse;
 mod half_plane;
 mod lanes;
+mod lighting;
 mod order;
 mod paint;
 mod place;
@@ -598,8 +599,8 @@ impl<'f> Floor<'f> {
     }
 }
 
-/// Both halves of some columns, if there are more than two.
+/// Both halves of some columns, if there are more than one.
 fn halves((from, to): Columns) -> Option<[Columns; 2]> {
     let middle = from + (to - from) / 2;
-    (to - from > 2).then_some([(from, middle), (middle, to)])
+    (to - from > 1).then_some([(from, middle), (middle, to)])
 }

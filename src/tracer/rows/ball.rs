@@ -10,16 +10,13 @@
 use std::cmp::Ordering;
 
 use super::ellipse::{Ellipse, Off};
+use super::lighting::{Highlight, Lighting};
 use super::shape::{MORE, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
-use crate::tracer::shading::Shading;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
-
-/// The logarithm of a power that nobody sees: e⁻⁴¹ < 2⁻⁵⁹.
-const CUT: f64 = -41.0;
 
 /// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have a small s: those with
 /// s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
@@ -114,29 +111,11 @@ struct Known {
     across: f64,
     off: f64,
     out: [f64; ZONES],
-    /// 3/√109 and 10/√109, of which the axes of m and s are made.
-    axes: [Bounded; 2],
 }
 
 impl Known {
-    /// A vector in the axes of q, m and s.
-    fn in_axes(&self, vector: Vector<Bounded>) -> [Bounded; 3] {
-        let [three, ten] = self.axes;
-        [
-            vector.x,
-            ten * vector.y - three * vector.z,
-            three * vector.y + ten * vector.z,
-        ]
-    }
-
-    /// vector · n + constant, as a form.
-    fn form(&self, constant: Bounded, vector: Vector<Bounded>) -> Form {
-        self.linear_form(vector).plus(constant)
-    }
-
-    /// vector · n, as a form.
-    fn linear_form(&self, vector: Vector<Bounded>) -> Form {
-        let factors = self.in_axes(vector);
+    /// vector · n, as a form, of a vector in the axes of q, m and s.
+    fn form(&self, factors: [Bounded; 3]) -> Form {
         Form {
             constant: 0.0,
             across: factors[0].value(),
@@ -165,35 +144,33 @@ impl Known {
         (carried + rounded) * MORE
     }
 
-    /// `h` is of length 1, `radius` the sphere's, n the exponent, and below `highlight` nobody sees (n·h)ⁿ.
-    fn halfway(&self, h: Vector<Bounded>, radius: Bounded, n: f64, highlight: f64) -> Halfway {
-        let at = self.in_axes(h).map(|component| component * radius);
+    /// `h` is that of a view, `radius` the sphere's.
+    fn halfway(&self, h: [Bounded; 3], highlight: &Highlight, radius: Bounded) -> Halfway {
+        let at = h.map(|component| component * radius);
         // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
         // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
         // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
-        let steepest = 1.0 / n.sqrt();
+        let n = highlight.exponent;
+        let steepest = highlight.steepest;
         let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
-        let limit = -libm::expm1(CUT / n);
         let known = [self.across, self.off, self.out[ZONES - 1]];
         let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
         let off = off / radius.value() * MORE;
         // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1 products, by u of what they give.
         let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
         let slope = n * (off / steepest + inexact) * MORE;
-        let tame = constant + slope * limit < 1.0 / 64.0;
+        let tame = constant + slope * highlight.limit < 1.0 / 64.0;
         let errors = if tame {
             [constant, slope]
         } else {
             [f64::INFINITY, 0.0]
         };
         Halfway {
-            form: self.linear_form(h.divided_by(radius)),
+            form: self.form(h.map(|component| component / radius)),
             at: at.map(Bounded::value),
             errors,
-            least: libm::exp2(1.0 - n),
-            // 1 − n·h = |n − h|²/2.
-            reach: ((2.0 * (1.0 - highlight)).sqrt() * self.radius + self.off + at[1].error())
-                * MORE,
+            least: highlight.least_power,
+            reach: (highlight.reach * self.radius + self.off + at[1].error()) * MORE,
         }
     }
 }
@@ -239,7 +216,7 @@ impl Ball {
     pub(super) fn new(
         sphere: &Sphere<Bounded>,
         outline: &Ellipse,
-        shading: &Shading<Bounded>,
+        lighting: &Lighting,
         color: Vector<Bounded>,
         shadows: bool,
     ) -> Ball {
@@ -251,34 +228,25 @@ impl Ball {
             outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
         let out = DEPTHS.map(|depth| (squared * depth / radius + U * radius) * MORE);
-        let root = Bounded::exact(109.0).sqrt();
-        let axes = [3.0, 10.0].map(|part| Bounded::exact(part) / root);
         let known = Known {
             radius,
             across,
             off: outline.off_error,
             out,
-            axes,
         };
-        let unit = |v: Vector<Bounded>| v.divided_by(sphere.radius);
-        let to_light = unit(shading.to_light_unit());
-        let light = known.linear_form(to_light);
-        let exponent = shading.exponent();
-        let n = f64::from(exponent);
-        // (1 − x)ⁿ ≤ e^−nx.
-        let highlight = libm::exp(CUT / n);
-        let halfway = shading
-            .halfway()
-            .map(|h| known.halfway(h, sphere.radius, n, highlight));
+        let to_light = lighting.to_light_unit.map(|part| part / sphere.radius);
+        let light = known.form(to_light);
+        let highlight = &lighting.highlight;
+        let halfway = lighting
+            .halfway
+            .map(|h| known.halfway(h, highlight, sphere.radius));
         // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that is, if its error is no more than that of a
         // factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
         let form_error = halfway.as_ref().map_or(0.0, |h| h.form.error);
-        let tame = n * (form_error + U) < 1.0 / 64.0;
+        let tame = highlight.exponent * (form_error + U) < 1.0 / 64.0;
         let left_out = if tame { tiny } else { f64::INFINITY };
-        let light_errors = known
-            .out
-            .map(|out| known.error(&known.in_axes(to_light), out));
+        let light_errors = known.out.map(|out| known.error(&to_light, out));
         let mut errors = [0.0_f64; ZONES];
         let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let parts = coefficients.map(|coefficient| coefficient * color);
@@ -299,7 +267,7 @@ impl Ball {
             }
             parts.map(Bounded::value)
         };
-        let [red, green, blue] = shading.coefficients();
+        let [red, green, blue] = lighting.coefficients;
         let channels = [
             channel(color.x, red),
             channel(color.y, green),
@@ -316,8 +284,8 @@ impl Ball {
             light,
             inverse_radius: 1.0 / sphere.radius.value(),
             halfway,
-            exponent,
-            highlight,
+            exponent: lighting.exponent,
+            highlight: highlight.least,
             color: Coefficients {
                 ambient: cycle(0),
                 diffuse: cycle(1),
@@ -347,22 +315,16 @@ impl Ball {
     }
 
     /// How far the hit is inside a half-space, in units of its normal's length.
-    pub(super) fn inside(&self, half_space: &HalfSpace<Bounded>) -> Form {
+    pub(super) fn inside(&self, half_space: &HalfSpace<Bounded>, lighting: &Lighting) -> Form {
         let n = half_space.normal;
-        self.known.form(n.dot(self.at - half_space.at), n)
+        let form = self.known.form(lighting.axes.of(n));
+        form.plus(n.dot(self.at - half_space.at))
     }
 
     /// n × l, component by component, and −n·l, with n of the radius's length: what [`Ball::around`] has in common for all spheres.
-    pub(super) fn beside(&self, to_light: &Direction<Bounded>) -> ([Form; 3], Form) {
-        let l = to_light.vector;
-        let zero = Bounded::exact(0.0);
-        let moment = [
-            Vector::new(zero, l.z, -l.y),
-            Vector::new(-l.z, zero, l.x),
-            Vector::new(l.y, -l.x, zero),
-        ];
-        let form = |vector| self.known.linear_form(vector);
-        (moment.map(form), form(-l))
+    pub(super) fn beside(&self, lighting: &Lighting) -> ([Form; 3], Form) {
+        let moment = lighting.moment.map(|factors| self.known.form(factors));
+        (moment, self.known.form(lighting.before))
     }
 
     /// The components of (hit − c) × l, and (c − hit)·l, for another sphere's centre c.

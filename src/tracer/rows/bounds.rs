@@ -10,6 +10,7 @@ use super::ball::{Ball, Form};
 use super::chord::{Chord, Chords};
 use super::ellipse::Ellipse;
 use super::lanes::{along, ambient, hits, lit, value};
+use super::lighting::Lighting;
 use super::place::Screen;
 use super::row::Columns;
 use super::span::ROWS;
@@ -237,10 +238,11 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
     for (index, sphere) in view.spheres.iter().enumerate() {
         let outline = Ellipse::outline(sphere.center, sphere.radius, screen);
         let color = known.0.solid_color(index) * known.2;
-        let ball = Ball::new(sphere, &outline, &view.shading, color, true);
+        let lighting = Lighting::new(&view.shading);
+        let ball = Ball::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
         let to_light = &view.shading.to_light;
-        let beside = ball.beside(to_light);
+        let beside = ball.beside(&lighting);
         let ([x, y, z], before) = ball.around(view.spheres[other].center, to_light, &beside);
         let case = Case {
             picture: truth.0,

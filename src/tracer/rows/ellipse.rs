@@ -7,6 +7,7 @@ use super::half_plane::Sheet;
 use super::place::{Screen, in_columns};
 use super::shape::{MORE, NOWHERE, Reaches, U};
 use crate::number::{Bounded, Real};
+use crate::tracer::line::Direction;
 use crate::tracer::vector::Vector;
 
 /// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
@@ -44,6 +45,57 @@ impl Off {
     #[inline(always)]
     pub(super) fn of_rows<S: Simd>(self, y: S::f64s) -> S::f64s {
         (y - self.zero) * self.slope
+    }
+}
+
+/// Lines in one direction from the points of a sheet: what all spheres that they meet have in common.
+pub(super) struct Lines<'s> {
+    sheet: &'s Sheet,
+    direction: Direction<Bounded>,
+    /// What a column adds to the moment of a line, and the length of that, squared.
+    per_column: Vector<Bounded>,
+    speed: Bounded,
+    /// The way of the moment, of length 1, where it is shortest in a row.
+    across: Vector<Bounded>,
+    /// How the middle of the chord, and m, go with Y.
+    middle_per_row: Bounded,
+    off_per_row: Bounded,
+}
+
+impl<'s> Lines<'s> {
+    pub(super) fn new(sheet: &'s Sheet, direction: Direction<Bounded>) -> Self {
+        let l = direction.vector;
+        let per_column = sheet.per_column.cross(l);
+        let per_row = sheet.per_row.cross(l);
+        let speed = per_column.squared_length();
+        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
+        let across = l.cross(per_column);
+        let across = across.divided_by(across.length() * speed.sqrt());
+        Lines {
+            sheet,
+            direction,
+            per_column,
+            speed,
+            across,
+            middle_per_row: -(per_row.dot(per_column) / speed),
+            off_per_row: per_row.dot(across),
+        }
+    }
+
+    /// The pixels from whose points they meet a sphere: |(p − c) × l|² ≤ |l|² R².
+    pub(super) fn meet(
+        &self,
+        (center, radius): (Vector<Bounded>, Bounded),
+        screen: Screen,
+    ) -> Ellipse {
+        let moment = (self.sheet.origin - center).cross(self.direction.vector);
+        let middle = -(moment.dot(self.per_column) / self.speed);
+        Ellipse::new(
+            (middle, self.middle_per_row),
+            (moment.dot(self.across), self.off_per_row),
+            self.direction.squared_length * radius.squared() / self.speed,
+            screen,
+        )
     }
 }
 
@@ -107,30 +159,6 @@ impl Ellipse {
             chord_error,
             slack,
         }
-    }
-
-    /// The pixels from whose points on the sheet lines along `direction` meet a sphere: |(p − c) × l|² ≤ |l|² R².
-    pub(super) fn of(
-        (center, radius): (Vector<Bounded>, Bounded),
-        direction: (Vector<Bounded>, Bounded),
-        sheet: &Sheet,
-        screen: Screen,
-    ) -> Ellipse {
-        let (l, squared_length) = direction;
-        let moment = (sheet.origin - center).cross(l);
-        let per_column = sheet.per_column.cross(l);
-        let per_row = sheet.per_row.cross(l);
-        let speed = per_column.squared_length();
-        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
-        let across = l.cross(per_column);
-        let across = across.divided_by(across.length() * speed.sqrt());
-        let middle = |moment: Vector<Bounded>| -(moment.dot(per_column) / speed);
-        Ellipse::new(
-            (middle(moment), middle(per_row)),
-            (moment.dot(across), per_row.dot(across)),
-            squared_length * radius.squared() / speed,
-            screen,
-        )
     }
 
     /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10 (Y − c_y) − 3 (Z − c_z))/√109.

@@ -9,9 +9,10 @@ use bumpalo::collections::Vec as Growing;
 use super::Parts;
 use super::ball::Ball;
 use super::border::Border;
-use super::ellipse::{Ellipse, Off};
+use super::ellipse::{Ellipse, Lines, Off};
 use super::half_plane::{HalfPlane, Sheet};
 use super::lanes::{Caster, Passing};
+use super::lighting::Lighting;
 use super::order::Order;
 use super::paint::PaintNumber;
 use super::place::Screen;
@@ -152,6 +153,7 @@ impl<'f> Solids<'f> {
             Some(floor) if mirrored => floor.extent.rows(screen.size),
             _ => (0, screen.size),
         };
+        let lighting = LazyCell::new(|| Lighting::new(&view.shading));
         if stage != Stage::Tetrahedron {
             for (index, sphere) in view.spheres.iter().enumerate() {
                 let ellipse = Ellipse::outline(sphere.center, sphere.radius, screen);
@@ -163,9 +165,10 @@ impl<'f> Solids<'f> {
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
-                    let ball = Ball::new(sphere, &ellipse, &view.shading, own, shadows);
+                    let ball = Ball::new(sphere, &ellipse, &lighting, own, shadows);
                     let casters = if shadows {
-                        casters_on(&ball, index, view, &facts.casters[index], arena)
+                        let casters = &facts.casters[index];
+                        casters_on(&ball, index, view, &lighting, casters, arena)
                     } else {
                         &[]
                     };
@@ -384,6 +387,7 @@ pub(super) fn shadows_on<'f>(
     arena: &'f Bump,
 ) -> impl Iterator<Item = Shape<'f>> {
     let to_light = view.shading.to_light;
+    let lines = LazyCell::new(move || Lines::new(sheet, to_light));
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
         let is_ahead = is_ahead(caster);
@@ -398,12 +402,7 @@ pub(super) fn shadows_on<'f>(
                 let before = before
                     .iter()
                     .map(|half_space| HalfPlane::of(half_space, sheet, screen));
-                let ellipse = Ellipse::of(
-                    (sphere.center, sphere.radius),
-                    (to_light.vector, to_light.squared_length),
-                    sheet,
-                    screen,
-                );
+                let ellipse = lines.meet((sphere.center, sphere.radius), screen);
                 Shape::new(collect(arena, before), Some(ellipse), screen)
             }
             None => {
@@ -426,12 +425,13 @@ fn casters_on<'f>(
     ball: &Ball,
     index: usize,
     view: &View<'_, Bounded>,
+    lighting: &Lighting,
     casters: &[u16],
     arena: &'f Bump,
 ) -> &'f [Caster<'f>] {
     let to_light = view.shading.to_light;
     let own = view.spheres[index].support;
-    let beside = LazyCell::new(|| ball.beside(&to_light));
+    let beside = LazyCell::new(|| ball.beside(lighting));
     let casters = casters.iter().filter_map(|&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
@@ -447,7 +447,7 @@ fn casters_on<'f>(
             None => {
                 let t = &view.tetrahedra[caster - view.spheres.len()];
                 let ahead = t.solid.ahead(&t.from_light);
-                let forms = ahead.map(|half_space| ball.inside(&half_space));
+                let forms = ahead.map(|half_space| ball.inside(&half_space, lighting));
                 Some(Caster::Cell(collect(arena, forms)))
             }
         }

@@ -1,0 +1,102 @@
+//! The light of a view in the axes of q, m and s, as in `ball.rs`: what the shading of all its spheres has in common.
+
+use super::shape::MORE;
+use crate::number::{Bounded, Real};
+use crate::tracer::shading::Shading;
+use crate::tracer::vector::Vector;
+
+/// The logarithm of a power that nobody sees: e⁻⁴¹ < 2⁻⁵⁹.
+const CUT: f64 = -41.0;
+
+/// The axes of q, m and s: (1, 0, 0), (0, 10, −3)/√109 and (0, 3, 10)/√109.
+#[derive(Clone, Copy)]
+pub(super) struct Axes {
+    /// 3/√109 and 10/√109.
+    three: Bounded,
+    ten: Bounded,
+}
+
+impl Axes {
+    fn new() -> Axes {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(|part| Bounded::exact(part) / root);
+        Axes { three, ten }
+    }
+
+    /// A vector in these axes.
+    pub(super) fn of(self, vector: Vector<Bounded>) -> [Bounded; 3] {
+        [
+            vector.x,
+            self.ten * vector.y - self.three * vector.z,
+            self.three * vector.y + self.ten * vector.z,
+        ]
+    }
+}
+
+/// What light does to the spheres of a view.
+pub(super) struct Lighting {
+    pub(super) axes: Axes,
+    /// l, of length 1.
+    pub(super) to_light_unit: [Bounded; 3],
+    /// What n is multiplied with in the components of n × l, and in −n·l, with an l of any length.
+    pub(super) moment: [[Bounded; 3]; 3],
+    pub(super) before: [Bounded; 3],
+    /// h, of length 1; `None` where there is no highlight.
+    pub(super) halfway: Option<[Bounded; 3]>,
+    pub(super) highlight: Highlight,
+    /// n, the exponent of the highlight.
+    pub(super) exponent: u32,
+    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with.
+    pub(super) coefficients: [[Bounded; 3]; 3],
+}
+
+/// Where a highlight can be seen, and how it changes.
+pub(super) struct Highlight {
+    /// n.
+    pub(super) exponent: f64,
+    /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
+    pub(super) least: f64,
+    /// 1 − n·h there.
+    pub(super) limit: f64,
+    /// A bound on |n − h| where it can be seen.
+    pub(super) reach: f64,
+    /// |n − h| where it is steepest.
+    pub(super) steepest: f64,
+    /// 2¹⁻ⁿ.
+    pub(super) least_power: f64,
+}
+
+impl Lighting {
+    pub(super) fn new(shading: &Shading<Bounded>) -> Lighting {
+        let axes = Axes::new();
+        let l = shading.to_light.vector;
+        let zero = Bounded::exact(0.0);
+        let moment = [
+            Vector::new(zero, l.z, -l.y),
+            Vector::new(-l.z, zero, l.x),
+            Vector::new(l.y, -l.x, zero),
+        ];
+        let exponent = shading.exponent();
+        let n = f64::from(exponent);
+        // (1 − x)ⁿ ≤ e^−nx.
+        let least = libm::exp(CUT / n);
+        Lighting {
+            axes,
+            to_light_unit: axes.of(shading.to_light_unit()),
+            moment: moment.map(|vector| axes.of(vector)),
+            before: axes.of(-l),
+            halfway: shading.halfway().map(|h| axes.of(h)),
+            highlight: Highlight {
+                exponent: n,
+                least,
+                limit: -libm::expm1(CUT / n),
+                // 1 − n·h = |n − h|²/2.
+                reach: (2.0 * (1.0 - least)).sqrt() * MORE,
+                steepest: 1.0 / n.sqrt(),
+                least_power: libm::exp2(1.0 - n),
+            },
+            exponent,
+            coefficients: shading.coefficients(),
+        }
+    }
+}
