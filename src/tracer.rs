@@ -6,12 +6,13 @@
 
 mod arena;
 mod decision;
+mod error;
 mod explain;
 mod extent;
+mod kernel;
 mod ladder;
 mod line;
 mod listing;
-
 mod palette;
 mod pixel;
 pub(crate) mod pool;
@@ -24,11 +25,11 @@ mod simd;
 mod sphere;
 mod stream;
 mod surface;
+mod target;
 mod tetrahedron;
 mod vector;
 mod view;
 
-use std::io;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
@@ -37,89 +38,15 @@ use std::sync::{Mutex, PoisonError};
 use crate::{Image, Scene, Stage};
 use arena::Arena;
 pub use decision::{Decision, Seen};
+pub use error::TraceError;
+pub use kernel::Kernel;
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
 use pool::{Pool, lock};
 pub use progress::Progress;
 use rows::{Memory, Precision, ROWS, Rows, Scratch};
 pub use simd::Simd;
-
-/// How numbers are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Kernel {
-    /// Every decision as in exact arithmetic, every sample the true value correctly rounded.
-    #[default]
-    Exact,
-    /// Every pixel in f32: careful formulas, no bounds, no safety net. Where borders cross a row is computed once a row, in f64.
-    Fast,
-    /// The same in f64, rounded to f32 once at the end.
-    Double,
-    /// The document's listings as printed, slips included: the baseline. Two spheres, one tetrahedron and a surface only.
-    Listing,
-    /// What errors are measured against: as exact, but with no f64 on the way.
-    Reference,
-}
-
-impl Kernel {
-    /// Every kernel.
-    pub const ALL: [Kernel; 5] = [
-        Kernel::Exact,
-        Kernel::Fast,
-        Kernel::Double,
-        Kernel::Listing,
-        Kernel::Reference,
-    ];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kernel::Exact => "exact",
-            Kernel::Fast => "fast",
-            Kernel::Double => "double",
-            Kernel::Listing => "listing",
-            Kernel::Reference => "reference",
-        }
-    }
-}
-
-/// A tracer that cannot be made, or a frame that cannot be traced.
-#[derive(Debug, thiserror::Error)]
-pub enum TraceError {
-    /// α is a NaN or an infinity.
-    #[error("α = {0} is not an angle: give a finite number of radians")]
-    Angle(f64),
-    /// The pixel is not in the picture.
-    #[error("column {column}, row {row} is not in a picture of {size} × {size} pixels: both count from 0 to {}", size.saturating_sub(1))]
-    Pixel {
-        /// Its column, counted from the left.
-        column: u32,
-        /// Its row, counted from the bottom.
-        row: u32,
-        /// N.
-        size: u32,
-    },
-    /// The kernel [`Kernel::Listing`] and a scene that is not of the document's shape.
-    #[error(
-        "the kernel listing traces 2 spheres, 1 tetrahedron and 1 surface; this scene has {spheres}, {tetrahedra} and {surfaces}: \
-         choose another kernel"
-    )]
-    Listing {
-        /// How many spheres there are.
-        spheres: usize,
-        /// How many tetrahedra.
-        tetrahedra: usize,
-        /// How many surfaces: 0 or 1.
-        surfaces: usize,
-    },
-    /// The worker threads could not be started.
-    #[error("{threads} threads cannot be started: {source}; ask for fewer")]
-    Threads {
-        /// How many were asked for.
-        threads: usize,
-        /// Why there are none.
-        source: io::Error,
-    },
-}
+use target::Target;
 
 /// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -562,30 +489,4 @@ enum Extent {
 fn next_frame() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(1);
     COUNT.fetch_add(1, Relaxed)
-}
-
-/// Some rows, and where they go.
-struct Target<'t> {
-    /// N.
-    size: u32,
-    samples: &'t mut [f32],
-    decisions: Option<&'t mut [Decision]>,
-    memory: Option<&'t mut [Memory]>,
-}
-
-impl<'t> Target<'t> {
-    /// Bands of so many rows.
-    fn split(self, rows: usize) -> impl Iterator<Item = Target<'t>> {
-        let size = self.size;
-        let width = size as usize;
-        let mut decisions = self.decisions.map(|all| all.chunks_mut(width * rows));
-        let mut memory = self.memory.map(|all| all.chunks_mut(rows));
-        let samples = self.samples.chunks_mut(3 * width * rows);
-        samples.map(move |samples| Target {
-            size,
-            samples,
-            decisions: decisions.as_mut().and_then(Iterator::next),
-            memory: memory.as_mut().and_then(Iterator::next),
-        })
-    }
 }

@@ -1,4 +1,4 @@
-//! A row that is being written, and what is remembered of it for the next frame.
+//! A row that is being written.
 
 use std::ops::Range;
 
@@ -6,77 +6,14 @@ use fearless_simd::{Level, dispatch};
 
 use super::chord::{Chord, bit_of};
 use super::lanes::{self, Run, Shading};
-use super::paint::{self, Bits, Paint};
+use super::memory::Memory;
+use super::paint::{self, Paint};
 use super::place::Screen;
 use super::solids::ShadedBall;
 use super::{Precision, plain};
 use crate::tracer::InDoubt;
 use crate::tracer::decision::Decision;
 use crate::tracer::ladder::Pixels;
-
-/// The columns of a row that were last given one colour.
-#[derive(Default)]
-pub(in crate::tracer) struct Memory {
-    /// Whether any of the row's samples has been written since this was last unset.
-    pub(in crate::tracer) is_written: bool,
-    /// From the left, in the frame before.
-    filled: Vec<Filled>,
-    /// How many of these lie to the left of what is being filled.
-    passed: usize,
-    /// The same of the frame that is being traced.
-    next: Vec<Filled>,
-}
-
-/// Columns of one colour.
-#[derive(Clone, Copy)]
-struct Filled {
-    columns: Columns,
-    color: Bits,
-}
-
-impl Memory {
-    /// Forgets the row, which others may have written.
-    pub(in crate::tracer) fn clear(&mut self) {
-        self.filled.clear();
-    }
-
-    /// Fills columns, from the left to the right of the row: calls `write` with those that do not have this colour already.
-    fn fill(&mut self, columns: Columns, color: Bits, mut write: impl FnMut(Columns)) {
-        match self.next.last_mut() {
-            Some(last) if last.columns.1 == columns.0 && last.color == color => {
-                last.columns.1 = columns.1;
-            }
-            _ => self.next.push(Filled { columns, color }),
-        }
-        let (mut from, to) = columns;
-        while let Some(before) = self.filled.get(self.passed)
-            && before.columns.0 < to
-        {
-            if before.color == color && before.columns.1 > from {
-                if before.columns.0 > from {
-                    self.is_written = true;
-                    write((from, before.columns.0));
-                }
-                from = before.columns.1;
-            }
-            if before.columns.1 > to {
-                break;
-            }
-            self.passed += 1;
-        }
-        if from < to {
-            self.is_written = true;
-            write((from, to));
-        }
-    }
-
-    /// The row is written.
-    fn finish(&mut self) {
-        std::mem::swap(&mut self.filled, &mut self.next);
-        self.next.clear();
-        self.passed = 0;
-    }
-}
 
 /// A row that is being written, of some neighbouring ones.
 pub(super) struct Row<'r> {

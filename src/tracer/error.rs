@@ -1,0 +1,42 @@
+//! What can be wrong with a tracer, or with what it is asked for.
+
+use std::io;
+
+/// A tracer that cannot be made, or a frame that cannot be traced.
+#[derive(Debug, thiserror::Error)]
+pub enum TraceError {
+    /// α is a NaN or an infinity.
+    #[error("α = {0} is not an angle: give a finite number of radians")]
+    Angle(f64),
+    /// The pixel is not in the picture.
+    #[error("column {column}, row {row} is not in a picture of {size} × {size} pixels: both count from 0 to {}", size.saturating_sub(1))]
+    Pixel {
+        /// Its column, counted from the left.
+        column: u32,
+        /// Its row, counted from the bottom.
+        row: u32,
+        /// N.
+        size: u32,
+    },
+    /// The kernel [`Kernel::Listing`] and a scene that is not of the document's shape.
+    #[error(
+        "the kernel listing traces 2 spheres, 1 tetrahedron and 1 surface; this scene has {spheres}, {tetrahedra} and {surfaces}: \
+         choose another kernel"
+    )]
+    Listing {
+        /// How many spheres there are.
+        spheres: usize,
+        /// How many tetrahedra.
+        tetrahedra: usize,
+        /// How many surfaces: 0 or 1.
+        surfaces: usize,
+    },
+    /// The worker threads could not be started.
+    #[error("{threads} threads cannot be started: {source}; ask for fewer")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// Why there are none.
+        source: io::Error,
+    },
+}

@@ -1,0 +1,30 @@
+//! Where rows go.
+
+use super::decision::Decision;
+use super::rows::Memory;
+
+/// Some rows, and where they go.
+pub(super) struct Target<'t> {
+    /// N.
+    pub(super) size: u32,
+    pub(super) samples: &'t mut [f32],
+    pub(super) decisions: Option<&'t mut [Decision]>,
+    pub(super) memory: Option<&'t mut [Memory]>,
+}
+
+impl<'t> Target<'t> {
+    /// Bands of so many rows.
+    pub(super) fn split(self, rows: usize) -> impl Iterator<Item = Target<'t>> {
+        let size = self.size;
+        let width = size as usize;
+        let mut decisions = self.decisions.map(|all| all.chunks_mut(width * rows));
+        let mut memory = self.memory.map(|all| all.chunks_mut(rows));
+        let samples = self.samples.chunks_mut(3 * width * rows);
+        samples.map(move |samples| Target {
+            size,
+            samples,
+            decisions: decisions.as_mut().and_then(Iterator::next),
+            memory: memory.as_mut().and_then(Iterator::next),
+        })
+    }
+}
