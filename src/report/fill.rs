@@ -96,7 +96,8 @@ mod x86 {
 
     /// A function that writes `pattern` over every block by aligned stores of one width.
     ///
-    /// Its callers promise that the blocks begin at a multiple of 64 bytes; since a block has 192 bytes, then all do.
+    /// # Safety
+    /// The blocks begin at a multiple of 64 bytes; since a block has 192 bytes, then all do. The processor has the feature.
     macro_rules! stores {
         ($name:ident, $feature:literal, $lanes:literal, $zero:ident, $load:ident, $store:ident) => {
             #[target_feature(enable = $feature)]

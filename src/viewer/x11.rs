@@ -130,6 +130,7 @@ impl Drop for Connection {
     }
 }
 
+// SAFETY: that is the type of POSIX's `_exit`, which is in every C library.
 unsafe extern "C" {
     /// Ends the process without calling what was registered for its end.
     safe fn _exit(status: c_int) -> !;
@@ -137,7 +138,7 @@ unsafe extern "C" {
 
 /// Called by Xlib, on whatever thread, when a connection to the server broke. Xlib lets it neither return nor unwind: it would end the
 /// process itself, after lines of its own. What OpenGL has registered for the end must not run while another thread is drawing.
-unsafe extern "C" fn server_died(_display: *mut c_void) -> c_int {
+extern "C" fn server_died(_display: *mut c_void) -> c_int {
     static DYING: Once = Once::new();
     DYING.call_once(|| {
         // Standard error may have died with the display.

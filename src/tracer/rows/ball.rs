@@ -150,7 +150,7 @@ impl Known {
         // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
         // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
         // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
-        let n = highlight.exponent;
+        let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
         let known = [self.across, self.off, self.out[ZONES - 1]];
@@ -244,7 +244,7 @@ impl Ball {
         // factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
         let form_error = halfway.as_ref().map_or(0.0, |h| h.form.error);
-        let tame = highlight.exponent * (form_error + U) < 1.0 / 64.0;
+        let tame = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
         let left_out = if tame { tiny } else { f64::INFINITY };
         let light_errors = known.out.map(|out| known.error(&to_light, out));
         let mut errors = [0.0_f64; ZONES];
@@ -284,7 +284,7 @@ impl Ball {
             light,
             inverse_radius: 1.0 / sphere.radius.value(),
             halfway,
-            exponent: lighting.exponent,
+            exponent: highlight.exponent,
             highlight: highlight.least,
             color: Coefficients {
                 ambient: cycle(0),

@@ -36,7 +36,7 @@ pub(super) struct AllBorders<'f> {
     pub(super) of: &'f [Border],
     /// What they are of, 64 at a time.
     pub(super) kinds: &'f [Kinds],
-    /// The first of the rows that each can cross, and what comes after the last; of none where there are fewer than 64.
+    /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where the last are fewer, the others cross none.
     rows: &'f [[[u32; 64]; 2]],
 }
 
@@ -92,10 +92,10 @@ impl<'f> Borders<'f> {
         }
     }
 
-    pub(super) fn add(&mut self, shape: Shape<'f>, of: Border) -> usize {
+    /// Those of one kind come in the order of their solids.
+    pub(super) fn add(&mut self, shape: Shape<'f>, of: Border) {
         self.shapes.push(shape);
         self.of.push(of);
-        self.of.len() - 1
     }
 
     /// Details of a solid that is seen in these rows only. Returns their numbers.

@@ -80,6 +80,7 @@ impl Column {
             self.shadows.add(kinds.shadows, bits);
             self.direct.any.add(kinds.direct, bits);
             self.mirrored.any.add(kinds.mirrored, bits);
+            // Borders of solids are numbered in the order of these.
             let mut solids = bits.0 & (kinds.direct | kinds.mirrored);
             while solids != 0 {
                 match borders.of[64 * word + solids.trailing_zeros() as usize] {

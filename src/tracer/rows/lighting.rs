@@ -44,8 +44,6 @@ pub(super) struct Lighting {
     /// h, of length 1; `None` where there is no highlight.
     pub(super) halfway: Option<[Bounded; 3]>,
     pub(super) highlight: Highlight,
-    /// n, the exponent of the highlight.
-    pub(super) exponent: u32,
     /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with.
     pub(super) coefficients: [[Bounded; 3]; 3],
 }
@@ -53,7 +51,7 @@ pub(super) struct Lighting {
 /// Where a highlight can be seen, and how it changes.
 pub(super) struct Highlight {
     /// n.
-    pub(super) exponent: f64,
+    pub(super) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(super) least: f64,
     /// 1 − n·h there.
@@ -87,7 +85,7 @@ impl Lighting {
             before: axes.of(-l),
             halfway: shading.halfway().map(|h| axes.of(h)),
             highlight: Highlight {
-                exponent: n,
+                exponent,
                 least,
                 limit: -libm::expm1(CUT / n),
                 // 1 − n·h = |n − h|²/2.
@@ -95,7 +93,6 @@ impl Lighting {
                 steepest: 1.0 / n.sqrt(),
                 least_power: libm::exp2(1.0 - n),
             },
-            exponent,
             coefficients: shading.coefficients(),
         }
     }
