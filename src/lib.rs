@@ -61,6 +61,7 @@ pub mod report;
 pub mod scene;
 pub mod screen;
 mod stage;
+mod text;
 pub mod tracer;
 pub mod viewer;
 

@@ -11,6 +11,7 @@
 #[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
+mod layer;
 mod offscreen;
 mod osmesa;
 mod placement;
@@ -20,11 +21,12 @@ mod timed;
 use std::ops::Range;
 use std::rc::Rc;
 
-use glam::{I64Vec2, UVec2};
+use glam::{I64Vec2, IVec2, UVec2};
 use glow::HasContext as _;
 
 use crate::image::{Image, ImageError, MAX_SIZE};
 pub use error::ScreenError;
+pub(crate) use layer::Layer;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;
@@ -52,6 +54,8 @@ const FRAGMENT_CAPABILITIES: [u32; 8] = [
 pub struct Screen {
     gl: Rc<glow::Context>,
     program: Program,
+    origin: Option<glow::UniformLocation>,
+    extent: Option<glow::UniformLocation>,
     texture: glow::Texture,
     /// Empty: a core context draws nothing without one.
     vertex_array: glow::VertexArray,
@@ -73,7 +77,7 @@ impl Screen {
         if size > max {
             return Err(ScreenError::TextureTooLarge { size, max });
         }
-        let program = Program::new(gl.clone())?;
+        let program = Program::new(gl.clone(), include_str!("screen/picture.frag"))?;
         // SAFETY: as above.
         let vertex_array = unsafe { gl.create_vertex_array() }
             .map_err(|reason| ScreenError::refused("a vertex array", &reason))?;
@@ -82,6 +86,8 @@ impl Screen {
             .map_err(|reason| ScreenError::refused("a texture", &reason))?;
         let screen = Screen {
             gl,
+            origin: program.uniform("origin"),
+            extent: program.uniform("extent"),
             program,
             texture,
             vertex_array,
@@ -189,16 +195,27 @@ impl Screen {
 
             gl.viewport(start.x, start.y, visible.x, visible.y);
             gl.use_program(Some(self.program.name));
-            gl.uniform_2_i32(
-                self.program.origin.as_ref(),
-                placement.origin.x,
-                placement.origin.y,
-            );
-            gl.uniform_1_u32(self.program.extent.as_ref(), placement.extent);
+            gl.uniform_2_i32(self.origin.as_ref(), placement.origin.x, placement.origin.y);
+            gl.uniform_1_u32(self.extent.as_ref(), placement.extent);
             gl.active_texture(glow::TEXTURE0);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.bind_vertex_array(Some(self.vertex_array));
             gl.draw_arrays(glow::TRIANGLE_STRIP, 0, 4);
+        }
+    }
+
+    /// Fills a rectangle of the bound framebuffer, over what was drawn there. `corner` is its bottom
+    /// left pixel, `size` its width and height.
+    pub(crate) fn fill(&self, corner: IVec2, size: UVec2, [red, green, blue]: [u8; 3]) {
+        let color = [red, green, blue].map(|byte| f32::from(byte) / 255.0);
+        let gl = &self.gl;
+        // SAFETY: the context is current.
+        unsafe {
+            gl.enable(glow::SCISSOR_TEST);
+            gl.scissor(corner.x, corner.y, size.x as i32, size.y as i32);
+            gl.clear_color(color[0], color[1], color[2], 1.0);
+            gl.clear(glow::COLOR_BUFFER_BIT);
+            gl.disable(glow::SCISSOR_TEST);
         }
     }
 

@@ -6,16 +6,21 @@
 
 mod action;
 mod app;
+mod canvas;
 mod clipboard;
 mod comparison;
 mod error;
 mod frames;
 mod information;
+mod layout;
+mod lines;
 mod menu;
 mod overlay;
+mod panel;
 mod playback;
 mod pointer;
 mod press;
+mod rect;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
 mod sheet;

@@ -101,7 +101,7 @@ fn it_names_every_picture_and_every_key() {
         );
     }
     // Taken by the tests of the viewer.
-    for name in ["viewer-menu", "viewer-errors"] {
+    for name in ["viewer-pixel", "viewer-errors"] {
         let path = format!("tests/images/{name}.png");
         assert!(readme.contains(&format!("({path})")), "{name}");
         let png = BufReader::new(File::open(file(&path)).unwrap());

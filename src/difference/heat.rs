@@ -3,13 +3,14 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+use glam::IVec2;
 
 use super::scale::{OCTAVES, color_at};
 use super::{SizesDiffer, error_color, steps};
 use crate::Image;
 use crate::image::whole_file::{Output, WholeFile};
 use crate::image::{SaveError, png};
+use crate::text::Font;
 
 /// The narrowest picture that the scale fits under.
 const MIN_WIDTH: usize = 560;
@@ -17,7 +18,8 @@ const MIN_WIDTH: usize = 560;
 /// Small pictures are magnified up to about this many pixels along a side.
 const MAGNIFIED: usize = 512;
 
-const FONT: (FontWeight, RasterHeight) = (FontWeight::Regular, RasterHeight::Size16);
+/// The width of a character, in pixels.
+const CHARACTER: u32 = 8;
 
 const PAPER: [u8; 3] = [255, 255, 255];
 
@@ -87,12 +89,13 @@ fn legend(width: usize) -> Strip {
     let mut strip = Strip::new(width, 76);
     let (top, height, side) = (28, 18, 24);
     let left = (width - MIN_WIDTH) / 2 + 12;
+    let mut font = Font::new(CHARACTER);
     let title = "largest error of a pixel's samples, in f32 steps";
-    strip.text(width / 2, 6, title);
+    strip.text(&mut font, width / 2, 6, title);
 
-    let swatch = |strip: &mut Strip, at: usize, color, label| {
+    let mut swatch = |strip: &mut Strip, at: usize, color, label| {
         strip.fill(at, top, side, height, color);
-        strip.text(at + side / 2, top + height + 6, label);
+        strip.text(&mut font, at + side / 2, top + height + 6, label);
     };
     swatch(&mut strip, left, error_color(Some(0)), "0");
     let (start, length) = (left + side + 24, MIN_WIDTH - 3 * (12 + side) - 48);
@@ -100,14 +103,14 @@ fn legend(width: usize) -> Strip {
         let color = color_at(x as f32 / (length - 1) as f32);
         strip.fill(start + x, top, 1, height, color);
     }
-    let labels = ["1", "16", "256", "4096", "65536", "2^20", "2^24.."];
+    let labels = ["1", "16", "256", "4096", "65536", "2²⁰", "2²⁴…"];
     let octaves = (0..=OCTAVES).step_by(4);
+    swatch(&mut strip, start + length + 36, error_color(None), "NaN");
     for (octave, label) in octaves.zip(labels) {
         let x = start + (length - 1) * octave as usize / OCTAVES as usize;
         strip.fill(x, top + height, 1, 4, [0; 3]);
-        strip.text(x, top + height + 6, label);
+        strip.text(&mut font, x, top + height + 6, label);
     }
-    swatch(&mut strip, start + length + 36, error_color(None), "NaN");
     strip
 }
 
@@ -145,21 +148,14 @@ impl Strip {
         }
     }
 
-    /// A line of ASCII in black, its middle at the column `middle`.
-    fn text(&mut self, middle: usize, top: usize, text: &str) {
-        let (weight, size) = FONT;
-        let advance = get_raster_width(weight, size);
-        let left = middle.saturating_sub(text.len() * advance / 2);
-        let glyphs = text.chars().filter_map(|c| get_raster(c, weight, size));
-        for (place, glyph) in glyphs.enumerate() {
-            for (row, line) in glyph.rows().enumerate() {
-                for (column, &ink) in line.iter().enumerate() {
-                    if ink > 0 {
-                        let paper = 255 - ink;
-                        self.set(left + place * advance + column, top + row, [paper; 3]);
-                    }
-                }
+    /// A line of text in black, its middle at the column `middle`.
+    fn text(&mut self, font: &mut Font, middle: usize, top: usize, text: &str) {
+        let width = text.chars().count() * font.cell().x as usize;
+        let left = middle.saturating_sub(width / 2);
+        font.write(text, IVec2::new(left as i32, top as i32), |pixel, ink| {
+            if let (Ok(column), Ok(row)) = (pixel.x.try_into(), pixel.y.try_into()) {
+                self.set(column, row, [255 - ink; 3]);
             }
-        }
+        });
     }
 }

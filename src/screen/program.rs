@@ -1,4 +1,4 @@
-//! The shader program that draws the picture.
+//! A shader program that draws one quad.
 
 use std::rc::Rc;
 
@@ -6,38 +6,31 @@ use glow::HasContext as _;
 
 use super::ScreenError;
 
-/// The linked program and the places of its uniforms.
+/// A linked program: the quad that fills the viewport, and a fragment shader.
 pub(super) struct Program {
     gl: Rc<glow::Context>,
     pub(super) name: glow::Program,
-    pub(super) origin: Option<glow::UniformLocation>,
-    pub(super) extent: Option<glow::UniformLocation>,
 }
 
 impl Program {
-    /// Compiles and links; `gl`'s context is current.
-    pub(super) fn new(gl: Rc<glow::Context>) -> Result<Program, ScreenError> {
+    /// Compiles and links, with `fragment` as the source of the fragment shader; `gl`'s context is
+    /// current.
+    pub(super) fn new(gl: Rc<glow::Context>, fragment: &str) -> Result<Program, ScreenError> {
         // SAFETY: as for every call in this folder, `gl`'s functions are loaded and its context is current on this thread.
         let name = unsafe { gl.create_program() }
             .map_err(|reason| ScreenError::refused("a shader program", &reason))?;
-        let mut program = Program {
-            gl,
-            name,
-            origin: None,
-            extent: None,
-        };
-        program.attach(
-            glow::VERTEX_SHADER,
-            "the vertex shader",
-            include_str!("picture.vert"),
-        )?;
-        program.attach(
-            glow::FRAGMENT_SHADER,
-            "the fragment shader",
-            include_str!("picture.frag"),
-        )?;
+        let program = Program { gl, name };
+        let quad = include_str!("quad.vert");
+        program.attach(glow::VERTEX_SHADER, "the vertex shader", quad)?;
+        program.attach(glow::FRAGMENT_SHADER, "the fragment shader", fragment)?;
         program.link()?;
         Ok(program)
+    }
+
+    /// The place of a uniform of the program; `None` where the driver found no use for it.
+    pub(super) fn uniform(&self, name: &str) -> Option<glow::UniformLocation> {
+        // SAFETY: the context is current and the program's name is of it.
+        unsafe { self.gl.get_uniform_location(self.name, name) }
     }
 
     fn attach(&self, kind: u32, what: &'static str, source: &str) -> Result<(), ScreenError> {
@@ -60,7 +53,7 @@ impl Program {
         }
     }
 
-    fn link(&mut self) -> Result<(), ScreenError> {
+    fn link(&self) -> Result<(), ScreenError> {
         let gl = &self.gl;
         // SAFETY: the context is current and the program's name is of it.
         unsafe {
@@ -69,8 +62,6 @@ impl Program {
                 let log = gl.get_program_info_log(self.name);
                 return Err(ScreenError::refused("to link the shader program", &log));
             }
-            self.origin = gl.get_uniform_location(self.name, "origin");
-            self.extent = gl.get_uniform_location(self.name, "extent");
         }
         Ok(())
     }

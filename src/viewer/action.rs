@@ -33,8 +33,10 @@ pub(super) enum Action {
 pub(super) struct Binding {
     /// The keys, as they are shown to a person.
     pub(super) keys: &'static str,
-    /// What they do, as it is shown to a person.
-    does: &'static str,
+    /// What they do, as a menu says it.
+    label: &'static str,
+    /// What the label leaves open, if anything.
+    detail: &'static str,
     pub(super) action: Action,
     /// The characters that mean it, letters in lower case.
     pub(super) characters: &'static [char],
@@ -51,10 +53,11 @@ pub(super) struct Binding {
 }
 
 impl Binding {
-    const fn new(keys: &'static str, does: &'static str, action: Action) -> Binding {
+    const fn new(keys: &'static str, label: &'static str, action: Action) -> Binding {
         Binding {
             keys,
-            does,
+            label,
+            detail: "",
             action,
             characters: &[],
             named: &[],
@@ -94,126 +97,135 @@ pub(super) const BINDINGS: &[Binding] = &[
     Binding::stage(Stage::Animation, "7", &['7'], &[C::Digit7, C::Numpad7]),
     Binding {
         named: &[N::Space],
-        ..Binding::new("Space", "pause or resume the animation", A::Pause)
+        ..Binding::new("Space", "Pause / Resume", A::Pause)
     },
     Binding {
         characters: &['.'],
+        detail: "pauses at the next of 21 α",
         repeats: true,
-        ..Binding::new(
-            ".",
-            "pause, and on to the next α of the 21 frames",
-            A::NextFrame,
-        )
+        ..Binding::new(".", "Next frame", A::NextFrame)
     },
     Binding {
         characters: &[','],
+        detail: "pauses at the one before",
         repeats: true,
-        ..Binding::new(
-            ",",
-            "pause, and back to the previous α of the 21 frames",
-            A::PreviousFrame,
-        )
+        ..Binding::new(",", "Previous frame", A::PreviousFrame)
     },
     Binding {
         named: &[N::ArrowLeft],
+        detail: "by 0.05 rad",
         repeats: true,
-        ..Binding::new("←", "turn by −0.05 rad", A::TurnLeft)
+        ..Binding::new("←", "Turn left", A::TurnLeft)
     },
     Binding {
         named: &[N::ArrowRight],
+        detail: "by 0.05 rad",
         repeats: true,
-        ..Binding::new("→", "turn by 0.05 rad", A::TurnRight)
+        ..Binding::new("→", "Turn right", A::TurnRight)
     },
     Binding {
         characters: &['+', '='],
+        detail: "speed × 1.25",
         repeats: true,
-        ..Binding::new("+", "play 1.25 times faster", A::Faster)
+        ..Binding::new("+", "Faster", A::Faster)
     },
     Binding {
         characters: &['-', '−'],
+        detail: "speed ÷ 1.25",
         repeats: true,
-        ..Binding::new("-", "play 1.25 times slower", A::Slower)
+        ..Binding::new("-", "Slower", A::Slower)
     },
     Binding {
         characters: &['0'],
         named: &[N::Home],
         places: &[C::Digit0, C::Numpad0],
-        ..Binding::new("0, Home", "α = 0", A::Zero)
+        detail: "α = 0",
+        ..Binding::new("0, Home", "Reset angle", A::Zero)
     },
     Binding {
         characters: &['s'],
         places: &[C::KeyS],
         shift: Some(false),
-        ..Binding::new("S", "save the traced picture as a PNG", A::SavePng)
+        detail: "the picture as traced, in 8 bits",
+        ..Binding::new("S", "Save PNG", A::SavePng)
     },
     Binding {
         characters: &['s'],
         places: &[C::KeyS],
         shift: Some(true),
-        ..Binding::new("Shift+S", "save the traced picture as an EXR", A::SaveExr)
+        detail: "the picture as traced, every bit",
+        ..Binding::new("Shift+S", "Save EXR", A::SaveExr)
     },
     Binding {
         characters: &['e'],
         places: &[C::KeyE],
-        ..Binding::new(
-            "E",
-            "how far this kernel is from reference, and back",
-            A::Errors,
-        )
+        detail: "this kernel against reference",
+        ..Binding::new("E", "Show errors", A::Errors)
     },
     Binding {
         characters: &['k'],
         places: &[C::KeyK],
-        ..Binding::new("K", "the next kernel", A::NextKernel)
+        ..Binding::new("K", "Next kernel", A::NextKernel)
     },
     Binding {
         characters: &['i'],
         places: &[C::KeyI],
-        ..Binding::new(
-            "I",
-            "information, and the pixel under the pointer",
-            A::Information,
-        )
+        detail: "stage, kernel, α, times",
+        ..Binding::new("I", "Information", A::Information)
     },
     Binding {
         characters: &['c'],
         places: &[C::KeyC],
         ctrl: true,
-        ..Binding::new("Ctrl+C", "copy the text of the clicked pixel", A::Copy)
+        detail: "of the clicked pixel",
+        ..Binding::new("Ctrl+C", "Copy pixel text", A::Copy)
     },
     Binding {
         characters: &['z'],
         places: &[C::KeyZ],
-        ..Binding::new("Z", "the whole picture again, after wheel and drag", A::Fit)
+        detail: "after wheel and drag",
+        ..Binding::new("Z", "Fit to window", A::Fit)
     },
     Binding {
         characters: &['f'],
         places: &[C::KeyF],
-        ..Binding::new("F", "full screen, and back", A::FullScreen)
+        ..Binding::new("F", "Full screen", A::FullScreen)
     },
     Binding {
         characters: &['m'],
         places: &[C::KeyM],
-        ..Binding::new("M", "the menu, also on the right button", A::Menu)
+        detail: "also on the right button",
+        ..Binding::new("M", "Menu", A::Menu)
     },
     Binding {
         characters: &['h'],
         named: &[N::F1],
         places: &[C::KeyH],
-        ..Binding::new("H, F1", "the keys", A::Help)
+        ..Binding::new("H, F1", "Keys", A::Help)
     },
     Binding {
         characters: &['q'],
         named: &[N::Escape],
         places: &[C::KeyQ],
-        ..Binding::new("Q, Esc", "leave; Esc first closes what is open", A::Leave)
+        detail: "Esc closes and leaves full screen first",
+        ..Binding::new("Q, Esc", "Quit", A::Leave)
     },
+];
+
+/// What the mouse does, as the table of keys says what they do.
+const MOUSE: [(&str, &str); 6] = [
+    ("pointer", "Name the pixel"),
+    ("click", "Explain the pixel"),
+    ("wheel", "Zoom; scroll the panel"),
+    ("drag", "Move the picture"),
+    ("right", "Menu"),
+    ("PgUp/Dn", "Scroll the panel"),
 ];
 
 /// A row of the menu.
 pub(super) struct Row {
     pub(super) keys: &'static str,
-    pub(super) does: &'static str,
+    pub(super) label: &'static str,
     pub(super) action: Action,
     /// Rows of another kind come before it.
     pub(super) opens_group: bool,
@@ -223,7 +235,7 @@ pub(super) struct Row {
 pub(super) fn rows() -> impl Iterator<Item = Row> {
     BINDINGS.iter().map(|binding| Row {
         keys: binding.keys,
-        does: binding.does,
+        label: binding.label,
         action: binding.action,
         opens_group: matches!(
             binding.action,
@@ -235,18 +247,28 @@ pub(super) fn rows() -> impl Iterator<Item = Row> {
 /// The keys of the viewer and what they do, one a line.
 ///
 /// ```
-/// assert!(firsthit::viewer::key_table().contains("Space    pause or resume the animation\n"));
+/// assert!(firsthit::viewer::key_table().contains("Space    Pause / Resume\n"));
 /// ```
 pub fn key_table() -> String {
-    let width = BINDINGS
-        .iter()
-        .map(|binding| binding.keys.chars().count())
-        .max()
-        .unwrap_or(0);
     BINDINGS
         .iter()
-        .map(|binding| format!("{:width$}  {}\n", binding.keys, binding.does))
+        .map(|binding| match binding.detail {
+            "" => row(binding.keys, binding.label),
+            detail => row(binding.keys, &format!("{}: {detail}", binding.label)),
+        })
         .collect()
+}
+
+/// What the mouse does, in lines as those of [`key_table`].
+pub(super) fn mouse_table() -> String {
+    MOUSE.iter().map(|(hand, does)| row(hand, does)).collect()
+}
+
+/// The column of a table in which it says what a key does.
+pub(super) const DOES: usize = 9;
+
+fn row(keys: &str, does: &str) -> String {
+    format!("{keys:DOES$}{does}\n")
 }
 
 #[cfg(test)]
@@ -262,5 +284,18 @@ mod tests {
         keys.sort_unstable();
         keys.dedup();
         assert_eq!(keys.len(), BINDINGS.len());
+        let lines = table.lines().chain(MOUSE.map(|(hand, _)| hand));
+        for keys in lines.map(|line| line.split("  ").next().unwrap_or(line)) {
+            assert!(keys.chars().count() + 2 <= DOES, "{keys}");
+        }
+    }
+
+    #[test]
+    fn a_label_is_four_words_at_most() {
+        for row in rows() {
+            let words = row.label.split_whitespace().filter(|word| *word != "/");
+            assert!(words.count() <= 4, "{}", row.label);
+            assert!(row.label.chars().next().is_some_and(char::is_uppercase));
+        }
     }
 }

@@ -13,16 +13,16 @@ use crate::{Image, Kernel, Stage};
 
 use super::action::Action;
 use super::clipboard::Clipboard;
-use super::comparison::{self, Comparing, Errors};
+use super::comparison::{self, Comparing, Errors, WRONG};
 use super::frames::Meter;
 use super::information::{Times, information, name_pixel};
 use super::playback::Playback;
 use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
-use super::sheet::{Facts, Sheet};
+use super::sheet::{Facts, Sheet, frame};
 use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
-use super::window::View;
+use super::window::{Mark, View};
 use super::{Counts, Event, Options, ViewerError};
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
@@ -242,8 +242,15 @@ impl App<'_> {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
+        if let Some(until) = self.view.as_mut().and_then(|view| view.awaits_size(start)) {
+            // Drawn in the new size at once, instead of in the old one first.
+            self.overdue |= overdue;
+            event_loop.set_control_flow(ControlFlow::WaitUntil(until));
+            return Ok(());
+        }
         let change = self.sheet.expire(start);
         let facts = self.facts();
+        let marks = self.marks(&facts);
         let Some(view) = &mut self.view else {
             return Ok(());
         };
@@ -256,7 +263,9 @@ impl App<'_> {
             return Ok(());
         }
         let waits = self.sheet.information;
-        let Some(draw) = view.draw((&mut self.sheet, &facts), waits)? else {
+        let window = (view.surface(), view.layout());
+        let boards = self.sheet.boards(window, view.cell(), &facts);
+        let Some(draw) = view.draw((&marks, boards), waits)? else {
             self.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());
@@ -292,10 +301,7 @@ impl App<'_> {
         let (Some(view), Some(shown)) = (&self.view, &self.shown) else {
             return Facts::default();
         };
-        let mut facts = Facts {
-            kernel: self.kernel.name(),
-            ..Facts::default()
-        };
+        let mut facts = Facts::default();
         if self.sheet.information {
             facts.information = information(shown, self.size, self.times);
         }
@@ -307,15 +313,12 @@ impl App<'_> {
             if let Some(picture) = &self.picture {
                 facts.pixel = name_pixel(picture, pixel);
             }
-            facts.pointer = Some(view.in_points(place));
-        }
-        if let Some((pixel, _)) = &self.sheet.inspected {
-            facts.inspected = Some(view.square_in_points(*pixel));
+            facts.pointer = Some(view.place_of(place));
         }
         if let Some(errors) = &self.errors {
             facts.errors = Some(errors.text(self.size));
             let rings = errors.done.iter().flat_map(|compared| &compared.rings);
-            facts.rings = rings.map(|&pixel| view.square_in_points(pixel)).collect();
+            facts.rings.extend(rings);
         }
         facts.on.push(Action::Stage(self.stage));
         for (on, action) in [
@@ -325,11 +328,31 @@ impl App<'_> {
             ),
             (self.errors.is_some(), Action::Errors),
             (self.sheet.information, Action::Information),
-            (self.sheet.help, Action::Help),
+            (self.sheet.keys_are_shown(), Action::Help),
         ] {
             facts.on.extend(on.then_some(action));
         }
         facts
+    }
+
+    /// What is drawn over the picture to show single pixels.
+    fn marks(&self, facts: &Facts) -> Vec<Mark> {
+        let Some(view) = &self.view else {
+            return Vec::new();
+        };
+        // A line, as wide as those of the characters.
+        let line = (view.cell().x / 7).max(1) as i32;
+        let rings = facts.rings.iter().flat_map(|&pixel| {
+            let bars = frame(view.square(pixel), 4 * line, line);
+            bars.map(|bar| (bar, WRONG))
+        });
+        let inspected = self.sheet.inspected().into_iter().flat_map(|(pixel, _)| {
+            let square = view.square(pixel);
+            let black = frame(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
+            let white = frame(square, line, line).map(|bar| (bar, [255; 3]));
+            black.into_iter().chain(white)
+        });
+        rings.chain(inspected).collect()
     }
 
     /// Whether a frame that is drawn now is the last one.
@@ -401,7 +424,7 @@ impl App<'_> {
                     self.touch();
                 }
                 Reply::Explained(pixel, text) => {
-                    self.sheet.inspected = Some((pixel, text.clone()));
+                    self.sheet.inspect(pixel, text.clone());
                     (self.report)(Event::Inspected(text));
                     self.touch();
                 }
@@ -440,6 +463,10 @@ impl App<'_> {
 
     /// Something but the picture looks different now.
     fn touch(&mut self) {
+        let open = self.sheet.has_panel() || self.errors.is_some();
+        if let Some(view) = &mut self.view {
+            view.show_panel(open);
+        }
         self.overdue = true;
         self.ask_for_redraw();
     }

@@ -18,32 +18,37 @@ pub(super) struct Times {
     pub(super) display: Option<f64>,
 }
 
-/// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many frames a second could be traced, and how
-/// many are displayed; the pixels in doubt.
+/// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many frames a
+/// second could be traced, and how many are displayed; the pixels in doubt. Lines of a name and a value.
 pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
     let frame = traced.frame;
-    let ms = |time: Duration| format!("{:.2}", 1e3 * time.as_secs_f64());
+    let ms = |time: Duration| format!("{:.2} ms", 1e3 * time.as_secs_f64());
     let rate = 1.0 / traced.time.as_secs_f64().max(1e-9);
     let display = match times.display {
         Some(rate) => format!("{rate:.0} fps"),
         None => "still".to_owned(),
     };
     let in_doubt = traced.in_doubt;
-    format!(
-        "{}  {}  α = {:.3}  {size} × {size}\n\
-         ms: trace {}  upload {}  draw {}  total {}\n\
-         tracing {rate:.0} fps  display {display}\n\
-         in doubt: {} after f64, {} after double-doubles",
-        frame.stage,
-        frame.kernel.name(),
-        frame.alpha,
-        ms(traced.time),
-        ms(times.upload),
-        ms(times.draw),
-        ms(traced.time + times.upload + times.draw),
+    let doubts = format!(
+        "{} after f64, {} after double-doubles",
         in_doubt.double_double + in_doubt.arbitrary,
-        in_doubt.arbitrary,
-    )
+        in_doubt.arbitrary
+    );
+    let lines = [
+        ("stage", frame.stage.to_string()),
+        ("kernel", frame.kernel.name().to_owned()),
+        ("α", format!("{:.3} rad", frame.alpha)),
+        ("size", format!("{size} × {size}")),
+        ("trace", format!("{}, {rate:.0} fps", ms(traced.time))),
+        ("upload", ms(times.upload)),
+        ("draw", ms(times.draw)),
+        ("total", ms(traced.time + times.upload + times.draw)),
+        ("display", display),
+        ("in doubt", doubts),
+    ];
+    lines
+        .map(|(name, value)| format!("{name:13}{value}\n"))
+        .concat()
 }
 
 /// A pixel by its column and row, its floats and its bytes.

@@ -1,26 +1,30 @@
 //! The main menu: the document's GLUT menu, made of the table of actions.
 
-use egui::{Pos2, Rect};
+use glam::{IVec2, UVec2};
 
-use super::action::{Action, rows};
+use super::action::{Action, Row, rows};
+use super::canvas::{Board, Color};
+use super::lines::{DIM, INK};
+use super::rect::Rect;
+
+const GROUND: Color = [40, 40, 48, 250];
+const CHOSEN: Color = [70, 90, 150, 255];
+const LINE: Color = [90, 90, 100, 255];
 
 /// The open menu.
 #[derive(Debug)]
 pub(super) struct Menu {
-    /// Its top left corner in points, as far as it fits there.
-    pub(super) place: Pos2,
+    /// Its top left corner, a pixel of the window, as far as it fits there.
+    place: IVec2,
     /// The row that Enter or a click takes.
-    pub(super) selected: Option<usize>,
-    /// Where the rows were drawn, in points; nothing of those that are scrolled out of sight.
-    pub(super) drawn: Vec<Rect>,
+    selected: Option<usize>,
 }
 
 impl Menu {
-    pub(super) fn open(place: Pos2) -> Menu {
+    pub(super) fn open(place: IVec2) -> Menu {
         Menu {
             place,
             selected: None,
-            drawn: Vec::new(),
         }
     }
 
@@ -35,9 +39,9 @@ impl Menu {
         self.selected = Some((from + by).rem_euclid(count) as usize);
     }
 
-    /// The pointer is at `place`; whether that selects another row.
-    pub(super) fn hover(&mut self, place: Pos2) -> bool {
-        let under = self.drawn.iter().position(|row| row.contains(place));
+    /// The pointer is at `place`, in a window of `surface` pixels; whether that selects another row.
+    pub(super) fn hover(&mut self, place: IVec2, surface: UVec2, cell: UVec2) -> bool {
+        let under = self.row_at(place, surface, cell);
         let changed = under.is_some() && under != self.selected;
         if changed {
             self.selected = under;
@@ -46,8 +50,8 @@ impl Menu {
     }
 
     /// What a click at `place` asks for.
-    pub(super) fn click(&mut self, place: Pos2) -> Option<Action> {
-        let under = self.drawn.iter().position(|row| row.contains(place))?;
+    pub(super) fn click(&self, place: IVec2, surface: UVec2, cell: UVec2) -> Option<Action> {
+        let under = self.row_at(place, surface, cell)?;
         rows().nth(under).map(|row| row.action)
     }
 
@@ -55,6 +59,74 @@ impl Menu {
     pub(super) fn chosen(&self) -> Option<Action> {
         rows().nth(self.selected?).map(|row| row.action)
     }
+
+    fn row_at(&self, place: IVec2, surface: UVec2, cell: UVec2) -> Option<usize> {
+        let (rect, rows) = self.lie(surface, cell);
+        let mut rows = rows.iter();
+        rows.position(|row| row.intersection(rect).contains(place))
+    }
+
+    /// Where the menu and its rows lie in a window of `surface` pixels. A menu that is higher than the
+    /// window is moved so that the selected row is seen.
+    fn lie(&self, surface: UVec2, cell: UVec2) -> (Rect, Vec<Rect>) {
+        let border = (cell.x / 2) as i32;
+        let width = (columns() * cell.x) as i32 + 2 * border;
+        let mut y = border;
+        let mut places: Vec<Rect> = Vec::new();
+        for row in rows() {
+            y += if row.opens_group { cell.x as i32 } else { 0 };
+            let size = UVec2::new(width as u32, cell.y + cell.y / 7);
+            places.push(Rect::new(IVec2::new(0, y), size));
+            y += size.y as i32;
+        }
+        let window = Rect::new(IVec2::ZERO, surface);
+        let size = UVec2::new(width as u32, (y + border) as u32);
+        let mut corner = Rect::new(self.place, size).moved_into(window).min;
+        if let Some(row) = self.selected.and_then(|selected| places.get(selected)) {
+            let hidden = corner.y + row.max.y + border - surface.y as i32;
+            corner.y -= hidden.max(0);
+        }
+        for row in &mut places {
+            *row = Rect::new(corner + row.min, row.size());
+        }
+        (Rect::new(corner, size).intersection(window), places)
+    }
+
+    /// The menu in a window of `surface` pixels, with a mark before the rows of `on`.
+    pub(super) fn board(&self, surface: UVec2, cell: UVec2, on: &[Action]) -> Board {
+        let (rect, places) = self.lie(surface, cell);
+        let mut board = Board::new(rect, GROUND);
+        let left = |row: &Rect, column: u32| {
+            let margin = (row.size().y - cell.y) / 2;
+            row.min + IVec2::new((cell.x / 2 + column * cell.x) as i32, margin as i32)
+        };
+        for (number, (row, place)) in rows().zip(&places).enumerate() {
+            if row.opens_group {
+                let corner = place.min - IVec2::new(0, (cell.x / 2) as i32 + 1);
+                let size = UVec2::new(place.size().x, (cell.x / 7).max(1));
+                board.fill(Rect::new(corner, size), LINE);
+            }
+            if self.selected == Some(number) {
+                board.fill(*place, CHOSEN);
+            }
+            if on.contains(&row.action) {
+                board.text(left(place, 0), "•", INK);
+            }
+            board.text(left(place, 2), row.label, INK);
+            let keys = columns() - 1 - row.keys.chars().count() as u32;
+            board.text(left(place, keys), row.keys, DIM);
+        }
+        board
+    }
+}
+
+/// The columns of the widest row: a mark, the label, the keys, a margin.
+fn columns() -> u32 {
+    let longest = |text: fn(&Row) -> &'static str| {
+        let lengths = rows().map(|row| text(&row).chars().count());
+        lengths.max().unwrap_or(0) as u32
+    };
+    2 + longest(|row| row.label) + 3 + longest(|row| row.keys) + 1
 }
 
 #[cfg(test)]
@@ -64,7 +136,7 @@ mod tests {
 
     #[test]
     fn stepping_goes_through_every_row_and_around() {
-        let mut menu = Menu::open(Pos2::ZERO);
+        let mut menu = Menu::open(IVec2::ZERO);
         assert_eq!(menu.chosen(), None);
         let actions: Vec<Action> = rows().map(|row| row.action).collect();
         for &action in actions.iter().chain(&actions) {
@@ -75,22 +147,39 @@ mod tests {
             menu.step(-1);
             assert_eq!(menu.chosen(), Some(action));
         }
-        let mut menu = Menu::open(Pos2::ZERO);
+        let mut menu = Menu::open(IVec2::ZERO);
         menu.step(-1);
         assert_eq!(menu.chosen(), Some(Action::Leave));
     }
 
+    const CELL: UVec2 = UVec2::new(7, 14);
+
     #[test]
     fn the_pointer_selects_what_it_is_on() {
-        let mut menu = Menu::open(Pos2::ZERO);
-        let row = |top| Rect::from_min_max(Pos2::new(0.0, top), Pos2::new(100.0, top + 10.0));
-        menu.drawn = vec![row(0.0), row(10.0), Rect::NOTHING];
-        assert!(menu.hover(Pos2::new(50.0, 15.0)));
-        assert!(!menu.hover(Pos2::new(51.0, 16.0)));
+        let surface = UVec2::new(500, 500);
+        let mut menu = Menu::open(IVec2::new(20, 20));
+        let (rect, places) = menu.lie(surface, CELL);
+        assert_eq!(rect.min, IVec2::new(20, 20));
+        let middle = |row: usize| (places[row].min + places[row].max) / 2;
+        assert!(menu.hover(middle(1), surface, CELL));
+        assert!(!menu.hover(middle(1) + 1, surface, CELL));
         assert_eq!(menu.chosen(), Some(Action::Stage(Stage::Spheres)));
-        assert!(!menu.hover(Pos2::new(500.0, 15.0)));
-        assert_eq!(menu.click(Pos2::new(500.0, 15.0)), None);
-        let first = menu.click(Pos2::new(50.0, 5.0));
+        let beside = IVec2::new(499, 250);
+        assert!(!menu.hover(beside, surface, CELL));
+        assert_eq!(menu.click(beside, surface, CELL), None);
+        let first = menu.click(middle(0), surface, CELL);
         assert_eq!(first, Some(Action::Stage(Stage::Image)));
+    }
+
+    #[test]
+    fn every_row_can_be_seen_in_a_small_window() {
+        let surface = UVec2::new(90, 60);
+        let mut menu = Menu::open(IVec2::new(50, 50));
+        for number in 0..rows().count() {
+            menu.step(1);
+            let (rect, places) = menu.lie(surface, CELL);
+            let seen = places[number].intersection(rect).size().y;
+            assert_eq!(seen, places[number].size().y, "row {number}");
+        }
     }
 }

@@ -1,72 +1,75 @@
-//! What is written over the picture: the menu, the keys, the information line, the inspected pixel, messages, the scale of errors.
+//! What is written beside the picture and over it: the panel with information, errors and a text to
+//! read, the menu, notes.
 
 use std::time::{Duration, Instant};
 
-use egui::{
-    Align2, Area, Button, Color32, Context, Frame, Id, Pos2, Rect, RichText, ScrollArea, Stroke,
-    StrokeKind, Ui,
-};
-use glam::UVec2;
+use glam::{IVec2, UVec2};
 
 use crate::difference::error_color;
 
-use super::action::{Action, key_table, rows};
+use super::action::{Action, DOES, key_table, mouse_table};
+use super::canvas::Board;
 use super::comparison::WRONG;
+use super::layout::Layout;
+use super::lines::{DIM, HEADING, INK, Line, wrap};
 use super::menu::Menu;
+use super::panel::{Scroll, columns, note, panel};
+use super::rect::Rect;
 
 /// How long a message stays, and the name of the pixel on which the pointer rests.
 const READING_TIME: Duration = Duration::from_secs(4);
 
-/// Where the line that names a pixel ends, in points from the top; with room to spare.
-const LINE_HEIGHT: f32 = 32.0;
+/// The column of an explanation and of the information in which the values begin.
+const VALUES: usize = 13;
 
-/// Everything that may lie over the picture.
+/// Everything that may be written.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     pub(super) menu: Option<Menu>,
-    pub(super) help: bool,
     pub(super) information: bool,
-    /// An inspected pixel, and its text once it is there.
-    pub(super) inspected: Option<(UVec2, String)>,
+    reading: Reading,
+    scroll: Scroll,
     /// The pixel under the pointer is named until then, for the pointer moved.
     pointed: Option<Instant>,
     message: Option<(String, Instant)>,
 }
 
-/// What the sheet says about the picture below it; each only where it is shown.
+/// The longer text in the panel.
+#[derive(Debug, Default, PartialEq)]
+enum Reading {
+    #[default]
+    Nothing,
+    Keys,
+    /// A clicked pixel, column and row, and its text.
+    Pixel(UVec2, String),
+}
+
+/// What the sheet says about the picture; each only where it is shown.
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     /// Stage, kernel, α, times.
     pub(super) information: String,
     /// The pixel under the pointer.
     pub(super) pixel: String,
-    /// Where the pointer is, in points.
-    pub(super) pointer: Option<Pos2>,
-    /// The square of the window, in points, that shows the inspected pixel.
-    pub(super) inspected: Option<Rect>,
+    /// Where the pointer is.
+    pub(super) pointer: Option<IVec2>,
     /// What the error view says.
     pub(super) errors: Option<String>,
-    /// The squares of the window, in points, that show wrong pixels.
-    pub(super) rings: Vec<Rect>,
+    /// The wrong pixels, column and row, that are ringed.
+    pub(super) rings: Vec<UVec2>,
     /// The rows of the menu that stand for something that is on.
     pub(super) on: Vec<Action>,
-    pub(super) kernel: &'static str,
 }
 
 impl Sheet {
-    /// Whether there is anything to draw.
-    pub(super) fn is_empty(&self) -> bool {
-        self.menu.is_none()
-            && !self.help
-            && !self.information
-            && self.inspected.is_none()
-            && self.pointed.is_none()
-            && self.message.is_none()
+    /// Whether anything stands beside the picture, apart from the errors.
+    pub(super) fn has_panel(&self) -> bool {
+        self.information || self.reading != Reading::Nothing
     }
 
     /// Whether the pixel under the pointer is named.
     pub(super) fn names_pixels(&self) -> bool {
-        self.information || self.inspected.is_some() || self.pointed.is_some()
+        self.information || self.inspected().is_some() || self.pointed.is_some()
     }
 
     /// Names the pixel under the pointer, which moved at `now`, for a while.
@@ -92,190 +95,191 @@ impl Sheet {
         message.into_iter().chain(self.pointed).min()
     }
 
-    /// Closes what was opened last, if anything is open that hides the picture.
+    /// Shows the keys, or takes them away.
+    pub(super) fn toggle_keys(&mut self) {
+        self.read(match self.reading {
+            Reading::Keys => Reading::Nothing,
+            Reading::Nothing | Reading::Pixel(..) => Reading::Keys,
+        });
+    }
+
+    /// Shows the text of a pixel that was clicked on.
+    pub(super) fn inspect(&mut self, pixel: UVec2, text: String) {
+        self.read(Reading::Pixel(pixel, text));
+    }
+
+    fn read(&mut self, reading: Reading) {
+        self.reading = reading;
+        self.scroll = Scroll::default();
+    }
+
+    /// The pixel that was clicked on, and its text.
+    pub(super) fn inspected(&self) -> Option<(UVec2, &str)> {
+        match &self.reading {
+            Reading::Pixel(pixel, text) => Some((*pixel, text)),
+            Reading::Nothing | Reading::Keys => None,
+        }
+    }
+
+    pub(super) fn keys_are_shown(&self) -> bool {
+        self.reading == Reading::Keys
+    }
+
+    /// Closes the menu, else the text that is read; whether one was open.
     pub(super) fn close(&mut self) -> bool {
         if self.menu.take().is_some() {
             return true;
         }
-        std::mem::take(&mut self.help) || self.inspected.take().is_some()
+        let open = self.reading != Reading::Nothing;
+        self.read(Reading::Nothing);
+        open
     }
 
-    /// Lays everything out. A window may be smaller than any of it: then it is cut off, or scrolls.
-    pub(super) fn lay_out(&mut self, context: &Context, facts: &Facts) {
-        if let Some(square) = facts.inspected {
-            let layer = egui::LayerId::new(egui::Order::Background, Id::unique("inspected square"));
-            let painter = context.layer_painter(layer);
-            for (width, color) in [(3.0, Color32::BLACK), (1.0, Color32::WHITE)] {
-                let stroke = Stroke::new(width, color);
-                painter.rect_stroke(square.expand(1.5), 0, stroke, StrokeKind::Middle);
+    /// Scrolls the panel by so many lines; whether that changes anything.
+    pub(super) fn scroll(&mut self, lines: isize) -> bool {
+        self.scroll.by(lines)
+    }
+
+    /// Scrolls the panel by almost a page; whether that changes anything.
+    pub(super) fn turn_page(&mut self, forward: bool) -> bool {
+        self.scroll.turn(forward)
+    }
+
+    /// Everything that is written in a window of `surface` pixels, with characters of `cell` pixels.
+    pub(super) fn boards(
+        &mut self,
+        (surface, layout): (UVec2, Layout),
+        cell: UVec2,
+        facts: &Facts,
+    ) -> Vec<Board> {
+        let mut boards = Vec::new();
+        let message = self.message.as_ref().map(|(text, _)| text.as_str());
+        let named = Some(facts.pixel.as_str()).filter(|name| !name.is_empty());
+        match layout.panel {
+            Some(rect) => {
+                let lines = self.lines(columns(rect, cell), facts);
+                let note = message.or(named);
+                boards.push(panel(rect, cell, &lines, note, &mut self.scroll));
+            }
+            None => {
+                // Not over the pixel that it names.
+                let high = |pointer: IVec2| pointer.y < 4 * cell.y as i32;
+                let at_top = !facts.pointer.is_some_and(high);
+                let name = named.map(|text| note(text, layout.picture, cell, at_top));
+                boards.extend(name);
+                boards.extend(message.map(|text| note(text, layout.picture, cell, false)));
             }
         }
-        if let Some(text) = &facts.errors {
-            ring(context, &facts.rings);
-            panel(context, "errors", Align2::RIGHT_BOTTOM, |ui| {
-                say(ui, text);
-                draw_scale(ui);
-            });
+        if let Some(menu) = &self.menu {
+            boards.push(menu.board(surface, cell, &facts.on));
         }
+        boards
+    }
+
+    /// The lines of the panel.
+    fn lines(&self, columns: usize, facts: &Facts) -> Vec<Line> {
+        let mut lines = Vec::new();
+        let mut part = |heading: &str, text: Vec<Line>| {
+            if !lines.is_empty() {
+                lines.push(Line::default());
+            }
+            lines.extend(wrap(heading, columns, 0, HEADING));
+            lines.extend(text);
+        };
         if self.information {
-            panel(context, "information", Align2::LEFT_TOP, |ui| {
-                say(ui, &facts.information);
-                if !facts.pixel.is_empty() {
-                    say(ui, &facts.pixel);
-                }
-            });
-        } else if !facts.pixel.is_empty() {
-            // Not over the pixel that it names.
-            let high = facts.pointer.is_some_and(|place| place.y < LINE_HEIGHT);
-            let place = if high && self.inspected.is_none() {
-                Align2::LEFT_BOTTOM
-            } else {
-                Align2::LEFT_TOP
-            };
-            panel(context, "pixel", place, |ui| say(ui, &facts.pixel));
+            part(
+                "Information",
+                wrap(&facts.information, columns, VALUES, INK),
+            );
         }
-        if let Some((_, text)) = &self.inspected {
-            let text =
-                format!("{text}(Ctrl+C copies this, Esc closes it; also on standard output)");
-            panel(context, "inspected", Align2::LEFT_BOTTOM, |ui| {
-                ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-                ui.label(RichText::new(text).monospace().size(10.0));
-            });
+        if let Some(errors) = &facts.errors {
+            let mut text = wrap(errors, columns, 2, INK);
+            text.extend(scale());
+            part("Errors", text);
         }
-        if self.help {
-            panel(context, "keys", Align2::CENTER_CENTER, |ui| {
-                say(ui, key_table().trim_end());
-                say(ui, MOUSE);
-            });
+        match &self.reading {
+            Reading::Nothing => {}
+            Reading::Keys => {
+                let mut text = wrap(&key_table(), columns, DOES, INK);
+                text.push(Line::default());
+                text.extend(wrap(&mouse_table(), columns, DOES, INK));
+                part("Keys and mouse", text);
+            }
+            Reading::Pixel(_, text) => {
+                let mut text = wrap(text, columns, VALUES, INK);
+                text.push(Line::default());
+                text.extend(wrap("Ctrl+C copies this, Esc closes it", columns, 0, DIM));
+                part("Pixel", text);
+            }
         }
-        if let Some((text, _)) = &self.message {
-            panel(context, "message", Align2::CENTER_BOTTOM, |ui| {
-                say(ui, text)
-            });
-        }
-        if let Some(menu) = &mut self.menu {
-            draw_menu(context, menu, facts);
-        }
+        lines
     }
 }
 
-/// Rings around squares, however small they are.
-fn ring(context: &Context, squares: &[Rect]) {
-    let layer = egui::LayerId::new(egui::Order::Background, Id::unique("rings"));
-    let painter = context.layer_painter(layer);
-    for square in squares {
-        let radius = square.width() / 2.0 + 5.0;
-        painter.circle_stroke(square.center(), radius, Stroke::new(1.5, rgb(WRONG)));
-    }
-}
-
-fn rgb([red, green, blue]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(red, green, blue)
-}
-
-/// The scale of the error view: its colours from 1 f32 step to 2²⁴, those without an error, and those that are no number.
-fn draw_scale(ui: &mut Ui) {
-    const OCTAVES: u32 = 24;
-    const WIDTH: f32 = 8.0;
-    let (strip, _) = ui.allocate_exact_size([25.0 * WIDTH, 10.0].into(), egui::Sense::hover());
-    for octave in 0..=OCTAVES {
-        let left = strip.min + egui::vec2(octave as f32 * WIDTH, 0.0);
-        let rect = Rect::from_min_size(left, [WIDTH, strip.height()].into());
-        let color = rgb(error_color(Some(1 << octave)));
-        ui.painter().rect_filled(rect, 0, color);
-    }
-    let (labels, _) = ui.allocate_exact_size([230.0, 14.0].into(), egui::Sense::hover());
-    for (octave, label) in [(0, "1"), (8, "2⁸"), (16, "2¹⁶"), (24, "2²⁴ ULP")] {
-        let place = labels.min + egui::vec2(octave as f32 * WIDTH, 0.0);
-        let font = egui::FontId::monospace(12.0);
-        let white = Color32::WHITE;
-        ui.painter()
-            .text(place, Align2::LEFT_TOP, label, font, white);
-    }
-    ui.horizontal(|ui| {
-        for (color, meaning) in [
-            (error_color(Some(0)), "exact"),
-            (error_color(None), "NaN"),
-            (WRONG, "wrong decision"),
-        ] {
-            let (square, _) = ui.allocate_exact_size([10.0, 10.0].into(), egui::Sense::hover());
-            ui.painter().rect_filled(square, 0, rgb(color));
-            let frame = Stroke::new(1.0, Color32::GRAY);
-            ui.painter()
-                .rect_stroke(square, 0, frame, StrokeKind::Inside);
-            say(ui, meaning);
-        }
+/// The scale of the error view: a cell for each octave from 1 f32 step to 2²⁴, those without an
+/// error, those that are no number, and wrong decisions.
+fn scale() -> [Line; 5] {
+    let strip = (0..=24).fold(Line::default(), |line, octave| {
+        line.swatch(octave, error_color(Some(1 << octave)))
     });
-}
-
-/// What the mouse does, below the keys.
-const MOUSE: &str = "pointer  name the pixel under it\nwheel    zoom around the pointer\ndrag     move the picture\nclick    work a pixel through\nright    the menu";
-
-fn say(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).monospace().size(12.0));
-}
-
-/// A dark panel at a corner, a side or in the middle of the window.
-fn panel(context: &Context, name: &str, place: Align2, contents: impl FnOnce(&mut Ui)) {
-    Area::new(Id::unique(name))
-        .anchor(place, [0.0, 0.0])
-        .interactable(false)
-        .fade_in(false)
-        .show(context, |ui| {
-            Frame::new()
-                .fill(Color32::from_black_alpha(200))
-                .inner_margin(4)
-                .show(ui, |ui| {
-                    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                    ui.visuals_mut().override_text_color = Some(Color32::WHITE);
-                    contents(ui);
-                });
+    let labels = [(0, "1"), (8, "2⁸"), (16, "2¹⁶"), (23, "2²⁴ f32 steps")];
+    let labels = labels
+        .into_iter()
+        .fold(Line::default(), |line, (column, label)| {
+            line.text(column, label, INK)
         });
+    let swatch = |color, meaning| Line::default().swatch(0, color).text(2, meaning, INK);
+    [
+        strip,
+        labels,
+        swatch(error_color(Some(0)), "exact"),
+        swatch(error_color(None), "NaN"),
+        swatch(WRONG, "wrong decision; single ones are framed"),
+    ]
 }
 
-fn draw_menu(context: &Context, menu: &mut Menu, facts: &Facts) {
-    let mut drawn = Vec::new();
-    let height = context.content_rect().height() - 12.0;
-    Area::new(Id::unique("menu"))
-        .order(egui::Order::Foreground)
-        .fixed_pos(menu.place)
-        .default_height(height)
-        .constrain(true)
-        .fade_in(false)
-        .show(context, |ui| {
-            Frame::menu(ui.style()).show(ui, |ui| {
-                let mut scroll = ScrollArea::vertical().max_height(height);
-                if menu.selected.is_none() {
-                    // Not where the last menu was left.
-                    scroll = scroll.vertical_scroll_offset(0.0);
-                }
-                scroll.show(ui, |ui| {
-                    for (number, row) in rows().enumerate() {
-                        if row.opens_group {
-                            ui.separator();
-                        }
-                        let mark = if facts.on.contains(&row.action) {
-                            "• "
-                        } else {
-                            "   "
-                        };
-                        let now = match row.action {
-                            Action::NextKernel => format!(" (now {})", facts.kernel),
-                            _ => String::new(),
-                        };
-                        let selected = menu.selected == Some(number);
-                        let text = format!("{mark}{}{now}", row.does);
-                        let button = Button::selectable(selected, RichText::new(text).size(12.0))
-                            .shortcut_text(RichText::new(row.keys).monospace().size(12.0))
-                            .min_size([330.0, 0.0].into());
-                        let response = ui.add(button);
-                        if selected {
-                            response.scroll_to_me(None);
-                        }
-                        drawn.push(response.rect.intersect(ui.clip_rect()));
-                    }
-                });
-            });
-        });
-    menu.drawn = drawn;
+/// The frame around a pixel of the picture that is drawn as `square`, `width` pixels wide and `apart`
+/// from it: four bars.
+pub(super) fn frame(square: Rect, apart: i32, width: i32) -> [Rect; 4] {
+    let (inner, outer) = (square.grown(apart), square.grown(apart + width));
+    let bar = |min: [i32; 2], max: [i32; 2]| Rect {
+        min: min.into(),
+        max: max.into(),
+    };
+    [
+        bar([outer.min.x, outer.min.y], [outer.max.x, inner.min.y]),
+        bar([outer.min.x, inner.max.y], [outer.max.x, outer.max.y]),
+        bar([outer.min.x, inner.min.y], [inner.min.x, inner.max.y]),
+        bar([inner.max.x, inner.min.y], [outer.max.x, inner.max.y]),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_goes_all_around_and_leaves_the_square_free() {
+        let square = Rect::new(IVec2::new(10, 20), UVec2::new(3, 5));
+        let bars = frame(square, 1, 2);
+        let area = |rect: &Rect| rect.size().element_product();
+        assert_eq!(bars.iter().map(area).sum::<u32>(), 9 * 11 - 5 * 7);
+        for bar in bars {
+            assert!(bar.intersection(square.grown(1)).is_empty());
+            assert_eq!(bar.intersection(square.grown(3)), bar);
+        }
+    }
+
+    #[test]
+    fn only_one_text_is_read_at_a_time_and_esc_closes_it() {
+        let mut sheet = Sheet::default();
+        sheet.toggle_keys();
+        sheet.inspect(UVec2::new(3, 4), "pixel".to_owned());
+        assert!(!sheet.keys_are_shown() && sheet.has_panel());
+        assert_eq!(sheet.inspected(), Some((UVec2::new(3, 4), "pixel")));
+        sheet.menu = Some(Menu::open(IVec2::ZERO));
+        assert!(sheet.close() && sheet.inspected().is_some());
+        assert!(sheet.close() && !sheet.has_panel());
+        assert!(!sheet.close());
+    }
 }

@@ -7,7 +7,6 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use egui::{Pos2, Rect};
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 use glutin::config::Config;
@@ -18,7 +17,7 @@ use glutin::display::GetGlDisplay as _;
 use glutin::prelude::*;
 use glutin::surface::{Surface, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle, RawDisplayHandle};
-use winit::dpi::{PhysicalPosition, PhysicalSize};
+use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowAttributes};
 
@@ -26,8 +25,11 @@ use crate::Image;
 use crate::screen::{Placement, Screen};
 
 use super::ViewerError;
+use super::canvas::Board;
+use super::layout::{Layout, with_panel};
 use super::overlay::Overlay;
-use super::sheet::{Facts, Sheet};
+use super::panel;
+use super::rect::Rect;
 use super::zoom::Zoom;
 use opengl::{Failure, config, display, functions};
 
@@ -42,12 +44,29 @@ pub(super) struct View {
     /// N of the pictures that are shown.
     picture: u32,
     zoom: Zoom,
+    /// A panel stands beside the picture.
+    panel: bool,
+    /// What the window was asked to become for the panel.
+    growth: Growth,
 }
+
+/// A window that grows for its panel, and shrinks again.
+#[derive(Clone, Copy, Default)]
+struct Growth {
+    /// The sizes before and after it grew; `None` where it did not.
+    grown: Option<[UVec2; 2]>,
+    /// A new size is on its way, but nobody waits for it any longer than until then.
+    awaited: Option<Instant>,
+}
+
+/// How long a window that was asked for another size is not drawn: a window manager may refuse.
+const PATIENCE: Duration = Duration::from_millis(100);
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
 struct Drawing {
-    /// Made when there is something to write over the picture.
+    /// Made when there is something to write.
     overlay: Option<Overlay>,
+    gl: Rc<glow::Context>,
     screen: Screen,
     renderer: String,
     surface: Surface<WindowSurface>,
@@ -55,17 +74,19 @@ struct Drawing {
 }
 
 impl View {
-    /// Opens a window for pictures of `picture` × `picture` pixels: of that size where it fits the monitor, else the largest square that does.
+    /// Opens a window for pictures of `picture` × `picture` pixels: so many logical pixels a side where
+    /// they fit the monitor, else the largest square that does.
     pub(super) fn open(event_loop: &ActiveEventLoop, picture: u32) -> Result<View, ViewerError> {
         let monitor = event_loop
             .primary_monitor()
             .or_else(|| event_loop.available_monitors().next())
-            .map(|monitor| monitor.size())
-            .filter(|size| size.width > 0 && size.height > 0);
-        let side = monitor.map_or(picture, |size| picture.min(size.width).min(size.height));
+            .map(|monitor| monitor.size().to_logical::<f64>(monitor.scale_factor()))
+            .filter(|size| size.width >= 1.0 && size.height >= 1.0);
+        let side = f64::from(picture);
+        let side = monitor.map_or(side, |size| side.min(size.width).min(size.height));
         let attributes = Window::default_attributes()
             .with_title("firsthit")
-            .with_inner_size(PhysicalSize::new(side, side));
+            .with_inner_size(LogicalSize::new(side, side));
         let mut reasons = Vec::new();
         for prefer_egl in [false, true] {
             match View::open_with(event_loop, &attributes, picture, prefer_egl) {
@@ -108,6 +129,8 @@ impl View {
             surface: UVec2::new(size.width, size.height),
             picture,
             zoom: Zoom::default(),
+            panel: false,
+            growth: Growth::default(),
         };
         view.renew()?;
         Ok(view)
@@ -149,27 +172,105 @@ impl View {
     /// The window has a new size, in pixels.
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
-        self.zoom.resize(self.surface, surface);
-        self.surface = surface;
+        let awaited = self.growth.awaited.take();
+        if let (Some([_, after]), Some(_), true) = (&mut self.growth.grown, awaited, self.panel) {
+            // As far as the window manager let it.
+            *after = surface;
+        }
+        self.change(|view| view.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
             drawing.surface.resize(&drawing.context, width, height);
         }
     }
 
-    /// Where the picture lies.
+    /// Changes what the layout depends on: what was in the middle of the picture's part stays there.
+    fn change(&mut self, change: impl FnOnce(&mut View)) {
+        let before = self.layout().picture.size();
+        change(self);
+        let after = self.layout().picture.size();
+        self.zoom.resize(before, after);
+    }
+
+    /// Opens or closes the panel. A window that is neither maximised nor fills the screen grows by what
+    /// the panel needs, and shrinks again unless it was given another size meanwhile.
+    pub(super) fn show_panel(&mut self, open: bool) {
+        if self.panel == open {
+            return;
+        }
+        let extent = self.zoom_to_fit().extent;
+        self.change(|view| view.panel = open);
+        let fixed = self.window.fullscreen().is_some() || self.window.is_maximized();
+        let grown = self.growth.grown.take();
+        let size = if open {
+            let most = self.window.current_monitor().map(|monitor| monitor.size());
+            let most = most.map_or(UVec2::MAX, |size| UVec2::new(size.width, size.height));
+            let size = with_panel(self.surface, extent, panel::wanted(self.cell()));
+            size.min(most).max(self.surface)
+        } else {
+            match grown {
+                Some([before, after]) if after == self.surface => before,
+                _ => self.surface,
+            }
+        };
+        if fixed || self.is_empty() || size == self.surface {
+            return;
+        }
+        if open {
+            self.growth.grown = Some([self.surface, size]);
+        }
+        self.growth.awaited = Some(Instant::now() + PATIENCE);
+        let asked = PhysicalSize::new(size.x, size.y);
+        if let Some(size) = self.window.request_inner_size(asked) {
+            self.resize(size);
+        }
+    }
+
+    /// Until when a new size of the window is waited for, if it is.
+    pub(super) fn awaits_size(&mut self, now: Instant) -> Option<Instant> {
+        self.growth.awaited.take_if(|until| *until <= now);
+        self.growth.awaited
+    }
+
+    /// The window and its parts.
+    pub(super) fn layout(&self) -> Layout {
+        let wanted = self.panel.then(|| panel::wanted(self.cell()));
+        Layout::new(self.surface, self.picture, wanted)
+    }
+
+    pub(super) fn surface(&self) -> UVec2 {
+        self.surface
+    }
+
+    /// Where the whole picture lies in its part of the window.
+    fn zoom_to_fit(&self) -> Placement {
+        Placement::fit(self.layout().picture.size(), self.picture)
+    }
+
+    /// The bottom left corner of the picture's part of the window, counted from the window's.
+    fn corner(&self, part: Rect) -> IVec2 {
+        IVec2::new(part.min.x, self.surface.y as i32 - part.max.y)
+    }
+
+    /// Where the picture lies in the window.
     fn placement(&self) -> Placement {
-        self.zoom.placement(self.surface, self.picture)
+        let part = self.layout().picture;
+        let mut placement = self.zoom.placement(part.size(), self.picture);
+        placement.origin += self.corner(part);
+        placement
     }
 
     /// Zooms around `pointer`, a pixel of the window, by so many steps; outward where they are negative.
     pub(super) fn zoom(&mut self, steps: i32, pointer: IVec2) {
-        self.zoom.by(steps, pointer, self.surface, self.picture);
+        let part = self.layout().picture;
+        let pointer = pointer - self.corner(part);
+        self.zoom.by(steps, pointer, part.size(), self.picture);
     }
 
     /// Moves the picture by so many pixels.
     pub(super) fn drag(&mut self, by: IVec2) {
-        self.zoom.drag(by, self.surface, self.picture);
+        let part = self.layout().picture;
+        self.zoom.drag(by, part.size(), self.picture);
     }
 
     /// Shows the whole picture.
@@ -192,6 +293,10 @@ impl View {
             .filter(|&millihertz| millihertz > 0)
             .unwrap_or(60_000);
         Duration::from_secs(1000) / millihertz
+    }
+
+    pub(super) fn is_full_screen(&self) -> bool {
+        self.window.fullscreen().is_some()
     }
 
     pub(super) fn toggle_full_screen(&self) {
@@ -220,27 +325,34 @@ impl View {
         Ok(start.elapsed())
     }
 
-    /// Draws the picture, and `sheet` over it. What it took, once it is on the way to the display; where `waits`, until it is done. `None`
-    /// says that the surface was lost and everything on it made anew, so that a picture must be uploaded again.
+    /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the way
+    /// to the display; where `waits`, until it is done. `None` says that the surface was lost and
+    /// everything on it made anew, so that a picture must be uploaded again.
     pub(super) fn draw(
         &mut self,
-        (sheet, facts): (&mut Sheet, &Facts),
+        (marks, boards): (&[Mark], Vec<Board>),
         waits: bool,
     ) -> Result<Option<Duration>, ViewerError> {
         let (placement, surface) = (self.placement(), self.surface);
-        let scale = self.scale();
+        let (part, cell) = (self.layout().picture, self.cell());
         let Some(drawing) = &mut self.drawing else {
             return Err(ViewerError::Lost);
         };
         let start = Instant::now();
         drawing.screen.draw(surface, placement);
-        if !sheet.is_empty() || facts.errors.is_some() {
-            let overlay = match drawing.overlay.take() {
-                Some(overlay) => overlay,
-                None => Overlay::new(functions(&self.config.display()))?,
-            };
-            let overlay = drawing.overlay.insert(overlay);
-            overlay.draw(surface, scale, |context| sheet.lay_out(context, facts));
+        for (rect, color) in marks {
+            let rect = rect.intersection(part);
+            if !rect.is_empty() {
+                let corner = IVec2::new(rect.min.x, surface.y as i32 - rect.max.y);
+                drawing.screen.fill(corner, rect.size(), *color);
+            }
+        }
+        if !boards.is_empty() || drawing.overlay.is_some() {
+            let gl = drawing.gl.clone();
+            let overlay = drawing
+                .overlay
+                .get_or_insert_with(|| Overlay::new(gl, cell));
+            overlay.draw(surface.y, cell, boards)?;
         }
         if waits {
             drawing.screen.finish();
@@ -272,32 +384,43 @@ impl View {
         }
     }
 
-    /// Pixels to a point.
-    fn scale(&self) -> f32 {
-        self.window.scale_factor() as f32
+    /// The width and height of a character in pixels: 7 × 14 logical ones.
+    pub(super) fn cell(&self) -> UVec2 {
+        let width = (7.0 * self.window.scale_factor()).round().max(1.0) as u32;
+        UVec2::new(width, 2 * width)
     }
 
     /// The pixel of the picture, column and row, that the pixel `window` of the window shows.
     pub(super) fn picture_pixel(&self, window: IVec2) -> Option<UVec2> {
-        self.placement().pixel_at(window, self.picture)
+        let part = self.layout().picture;
+        let shown = part.contains(self.place_of(window));
+        shown.then(|| self.placement().pixel_at(window, self.picture))?
     }
 
-    /// The place of the middle of the pixel `window`, in points from the top left corner.
-    pub(super) fn in_points(&self, window: IVec2) -> Pos2 {
-        let top = self.surface.y as i32 - 1 - window.y;
-        Pos2::new(window.x as f32 + 0.5, top as f32 + 0.5) / self.scale()
+    /// Whether the panel is at the pixel `window` of the window.
+    pub(super) fn is_over_panel(&self, window: IVec2) -> bool {
+        let panel = self.layout().panel;
+        panel.is_some_and(|panel| panel.contains(self.place_of(window)))
     }
 
-    /// The square that shows a pixel of the picture, in points from the top left corner.
-    pub(super) fn square_in_points(&self, pixel: UVec2) -> Rect {
+    /// The place of the pixel `window` of the window, counted from its top left corner.
+    pub(super) fn place_of(&self, window: IVec2) -> IVec2 {
+        IVec2::new(window.x, self.surface.y as i32 - 1 - window.y)
+    }
+
+    /// The square of the window that shows a pixel of the picture.
+    pub(super) fn square(&self, pixel: UVec2) -> Rect {
         let [first, end] = self.placement().square_of(pixel, self.picture);
         let height = self.surface.y as i32;
-        Rect::from_min_max(
-            Pos2::new(first.x as f32, (height - end.y) as f32) / self.scale(),
-            Pos2::new(end.x as f32, (height - first.y) as f32) / self.scale(),
-        )
+        Rect {
+            min: IVec2::new(first.x, height - end.y),
+            max: IVec2::new(end.x, height - first.y),
+        }
     }
 }
+
+/// A rectangle of the window in one colour, over the picture.
+pub(super) type Mark = (Rect, [u8; 3]);
 
 impl Drawing {
     fn new(
@@ -334,9 +457,11 @@ impl Drawing {
         let gl = functions(&display);
         // SAFETY: the context is current; every context has these two names.
         let renderer = unsafe { gl.get_parameter_string(glow::RENDERER) };
-        let screen = Screen::new(Rc::new(gl), picture).map_err(ViewerError::from)?;
+        let gl = Rc::new(gl);
+        let screen = Screen::new(gl.clone(), picture).map_err(ViewerError::from)?;
         Ok(Drawing {
             overlay: None,
+            gl,
             screen,
             renderer,
             surface,

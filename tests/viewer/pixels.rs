@@ -33,6 +33,27 @@ impl Pixels {
         pairs.filter(|(a, b)| a != b).count()
     }
 
+    /// The rectangle of `width` × `height` pixels whose top left one is at `left` and `top`; as much of
+    /// it as there is.
+    pub fn part(&self, [left, top]: [usize; 2], [width, height]: [usize; 2]) -> Pixels {
+        let width = width.min(self.width.saturating_sub(left));
+        let rows = self.bytes.chunks(self.width).skip(top).take(height);
+        let bytes: Vec<_> = rows
+            .flat_map(|row| &row[left..left + width])
+            .copied()
+            .collect();
+        Pixels {
+            width,
+            height: bytes.len() / width.max(1),
+            bytes,
+        }
+    }
+
+    /// How many pixels have this colour.
+    pub fn count(&self, color: [u8; 3]) -> usize {
+        self.bytes.iter().filter(|&&pixel| pixel == color).count()
+    }
+
     pub fn save(&self, path: &Path) {
         let file = fs::File::create(path).unwrap();
         let mut encoder = png::Encoder::new(

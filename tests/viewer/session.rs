@@ -24,6 +24,8 @@ pub const CONTROL: u32 = 0xffe3;
 pub const SPACE: u32 = 0x20;
 pub const ESCAPE: u32 = 0xff1b;
 pub const HOME: u32 = 0xff50;
+pub const PAGE_UP: u32 = 0xff55;
+pub const PAGE_DOWN: u32 = 0xff56;
 pub const LEFT: u32 = 0xff51;
 pub const RIGHT: u32 = 0xff53;
 
@@ -36,6 +38,12 @@ pub const LEFT_BUTTON: u8 = 1;
 pub const RIGHT_BUTTON: u8 = 3;
 pub const WHEEL_UP: u8 = 4;
 pub const WHEEL_DOWN: u8 = 5;
+
+/// The colour of a panel's ground.
+const PANEL: [u8; 3] = [24, 24, 30];
+
+/// A panel's width at scale factor 1: 54 characters and a margin of one on either side.
+pub const PANEL_WIDTH: usize = 56 * 7;
 
 /// The viewer with its window on a display of its own.
 pub struct Session {
@@ -388,6 +396,48 @@ impl Session {
             (100 * covered >= percent * width * height).then_some(())
         });
         self.screenshot(name);
+    }
+
+    /// Waits until a panel with text stands to the right of the picture's part of the window, `width`
+    /// pixels wide, which shows all of the picture of N = `size`, `stage` and `alpha`, and keeps it to be
+    /// looked at. Only the frame around an inspected pixel, `framed` from the left and the top, may lie
+    /// over the picture.
+    #[track_caller]
+    pub fn shows_beside_panel(
+        &self,
+        width: usize,
+        (size, stage, alpha): (u32, Stage, f64),
+        framed: Option<[usize; 2]>,
+        name: &str,
+    ) {
+        let picture = traced(size, stage, alpha);
+        wait_for(&format!("{name} beside the picture"), || {
+            let shown = self.pixels()?;
+            let (whole, height) = (shown.width, shown.height);
+            let panel = shown.part([width, 0], [whole, height]);
+            let clean = panel.count(PANEL) * 2 > panel.bytes.len();
+            let ink = panel.bytes.iter().filter(|[red, ..]| *red > 150);
+            let expected = letterboxed(&picture, width, height);
+            let part = shown.part([0, 0], [width, height]);
+            let pairs = part.bytes.iter().zip(&expected.bytes).enumerate();
+            let wrong = pairs.filter(|(place, (shown, expected))| {
+                let [x, y] = [place % width, place / width];
+                let far =
+                    framed.is_none_or(|[left, top]| x.abs_diff(left).max(y.abs_diff(top)) > 8);
+                far && shown != expected
+            });
+            let shows = expected.bytes.len() == part.bytes.len() && wrong.count() == 0;
+            (clean && shows && ink.count() > 300).then_some(())
+        });
+        self.screenshot(name);
+    }
+
+    /// Waits until the window has this size.
+    #[track_caller]
+    pub fn becomes(&self, width: usize, height: usize) {
+        wait_for(&format!("a window of {width} × {height}"), || {
+            (self.size() == (width, height)).then_some(())
+        });
     }
 
     /// The picture in the window as a PNG in the tests' folder for temporary files, to be looked at.

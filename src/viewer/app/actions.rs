@@ -52,7 +52,7 @@ impl App<'_> {
                 self.toggle_menu(place);
             }
             Action::Help => {
-                self.sheet.help = !self.sheet.help;
+                self.sheet.toggle_keys();
                 self.touch();
             }
             Action::Fit => {
@@ -114,13 +114,13 @@ impl App<'_> {
 
     /// Copies the text of the pixel that was clicked on.
     fn copy(&mut self) {
-        let (Some((_, text)), Some(clipboard)) = (&self.sheet.inspected, &mut self.clipboard)
+        let (Some((_, text)), Some(clipboard)) = (self.sheet.inspected(), &mut self.clipboard)
         else {
             self.sheet
                 .say("nothing to copy: click on a pixel first".to_owned());
             return self.touch();
         };
-        let said = match clipboard.copy(text.clone()) {
+        let said = match clipboard.copy(text.to_owned()) {
             Ok(()) => "copied the text of the clicked pixel".to_owned(),
             Err(error) => format!("not copied: {error}"),
         };

@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use egui::Pos2;
 use glam::IVec2;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
@@ -15,6 +14,9 @@ use crate::viewer::action::Action;
 use crate::viewer::menu::Menu;
 use crate::viewer::pointer::Gesture;
 use crate::viewer::press::Press;
+
+/// A notch of the wheel scrolls the panel by so many lines.
+const SCROLLED: isize = 3;
 
 impl ApplicationHandler for App<'_> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
@@ -61,9 +63,10 @@ impl ApplicationHandler for App<'_> {
                 is_synthetic: false,
                 ..
             } if event.state.is_pressed() => {
-                if self.menu_key(event_loop, &event.logical_key) {
-                } else if event.logical_key == Key::Named(NamedKey::Escape) && self.sheet.close() {
-                    self.touch();
+                if self.menu_key(event_loop, &event.logical_key)
+                    || self.panel_key(&event.logical_key)
+                    || event.logical_key == Key::Named(NamedKey::Escape) && self.escape()
+                {
                 } else if let Some(action) = self.pressed(&event) {
                     self.act(event_loop, action);
                 }
@@ -130,6 +133,33 @@ impl App<'_> {
         press.action()
     }
 
+    /// Closes what is open, else leaves full screen; whether there was either.
+    fn escape(&mut self) -> bool {
+        if self.sheet.close() {
+            self.touch();
+            return true;
+        }
+        let full_screen = self.view.as_ref().filter(|view| view.is_full_screen());
+        if let Some(view) = full_screen {
+            view.toggle_full_screen();
+        }
+        full_screen.is_some()
+    }
+
+    /// What a key does for the panel, if it is one of the panel's own.
+    fn panel_key(&mut self, key: &Key) -> bool {
+        let forward = match key {
+            Key::Named(NamedKey::PageDown) => true,
+            Key::Named(NamedKey::PageUp) => false,
+            _ => return false,
+        };
+        let turned = self.sheet.turn_page(forward);
+        if turned {
+            self.touch();
+        }
+        turned
+    }
+
     /// What the pointer asks for.
     fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
         if self.sheet.menu.is_some() {
@@ -141,6 +171,11 @@ impl App<'_> {
         };
         match gesture {
             Gesture::Drag { by } => view.drag(by),
+            Gesture::Wheel { steps, at } if view.is_over_panel(at) => {
+                if !self.sheet.scroll(-SCROLLED * steps as isize) {
+                    return;
+                }
+            }
             Gesture::Wheel { steps, at } => view.zoom(steps, at),
             Gesture::Hover => {
                 let place = self.pointer.place();
@@ -167,7 +202,7 @@ impl App<'_> {
         if self.sheet.menu.take().is_none()
             && let Some(view) = &self.view
         {
-            let place = place.map_or(Pos2::ZERO, |place| view.in_points(place));
+            let place = place.map_or(IVec2::ZERO, |place| view.place_of(place));
             self.sheet.menu = Some(Menu::open(place));
         }
         self.touch();
@@ -207,17 +242,18 @@ impl App<'_> {
         let (Some(view), Some(menu)) = (&self.view, &mut self.sheet.menu) else {
             return;
         };
+        let (surface, cell) = (view.surface(), view.cell());
         match gesture {
             Gesture::Hover => {
-                let under = self.pointer.place().map(|place| view.in_points(place));
-                if !under.is_some_and(|place| menu.hover(place)) {
+                let under = self.pointer.place().map(|place| view.place_of(place));
+                if !under.is_some_and(|place| menu.hover(place, surface, cell)) {
                     return;
                 }
             }
             Gesture::Wheel { steps, .. } => menu.step(-steps as isize),
             Gesture::Drag { .. } => return,
             Gesture::Click { at } => {
-                let action = menu.click(view.in_points(at));
+                let action = menu.click(view.place_of(at), surface, cell);
                 self.sheet.menu = None;
                 if let Some(action) = action {
                     self.choose(event_loop, action);
