@@ -31,7 +31,7 @@ use super::overlay::Overlay;
 use super::panel;
 use super::rect::Rect;
 use super::zoom::Zoom;
-use opengl::{Failure, config, display, functions};
+use opengl::{Failure, config, display, fitting, functions};
 
 /// The window and everything that draws in it.
 pub(super) struct View {
@@ -106,7 +106,7 @@ impl View {
         prefer_egl: bool,
     ) -> Result<View, Failure> {
         let create = |config: Option<&Config>| match config {
-            Some(config) => glutin_winit::finalize_window(event_loop, attributes.clone(), config),
+            Some(config) => event_loop.create_window(fitting(attributes.clone(), config)),
             None => event_loop.create_window(attributes.clone()),
         };
         // Windows has no display without a window; elsewhere the display says what kind of window it can draw in.

@@ -5,6 +5,7 @@ use glutin::display::{Display, DisplayApiPreference};
 use glutin::prelude::*;
 use raw_window_handle::{HasDisplayHandle as _, RawDisplayHandle, RawWindowHandle};
 use winit::event_loop::ActiveEventLoop;
+use winit::window::WindowAttributes;
 
 use crate::viewer::ViewerError;
 use crate::viewer::error::reason;
@@ -93,6 +94,23 @@ pub(super) fn config(display: &Display) -> Result<Config, Failure> {
         .ok_or_else(|| {
             Failure::OpenGl("the display offers no configuration for a window".to_owned())
         })
+}
+
+/// `attributes` of a window that `config` can draw in: on X11 it must have the visual of `config`.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+pub(super) fn fitting(attributes: WindowAttributes, config: &Config) -> WindowAttributes {
+    use glutin::platform::x11::X11GlConfigExt as _;
+    use winit::platform::x11::WindowAttributesExtX11 as _;
+
+    match config.x11_visual() {
+        Some(visual) => attributes.with_x11_visual(visual.visual_id() as u32),
+        None => attributes,
+    }
+}
+
+#[cfg(not(all(unix, not(target_vendor = "apple"))))]
+pub(super) fn fitting(attributes: WindowAttributes, _config: &Config) -> WindowAttributes {
+    attributes
 }
 
 /// Why a window or what is in it could not be made.
