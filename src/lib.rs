@@ -30,9 +30,25 @@
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another; the false-colour picture of it |
-//! | [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |
-//! | [`report`] | speed against error: times, errors, a table, JSON, a plot |
-//! | [`viewer`] | the window: keys, the clock of α, the redisplay |
+#![cfg_attr(
+    feature = "screen",
+    doc = "| [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |"
+)]
+#![cfg_attr(
+    feature = "program",
+    doc = "| [`report`] | speed against error: times, errors, a table, JSON, a plot |",
+    doc = "| [`viewer`] | the window: keys, the clock of α, the redisplay |"
+)]
+//!
+//! # Features
+//!
+//! Who wants pictures only turns the default off: what is left knows no OpenGL, no window and no command line, and is a third of the
+//! crates to build.
+//!
+//! | feature | what it adds |
+//! | --- | --- |
+//! | `screen` | `screen`: a picture as a texture in the caller's OpenGL context, or in one without a window |
+//! | `program`, the default | `screen`, `report`, `viewer`, and the program itself |
 //!
 //! # What the picture is
 //!
@@ -57,12 +73,15 @@ pub mod camera;
 pub mod difference;
 pub mod image;
 mod number;
+#[cfg(feature = "program")]
 pub mod report;
 pub mod scene;
+#[cfg(feature = "screen")]
 pub mod screen;
 mod stage;
 mod text;
 pub mod tracer;
+#[cfg(feature = "program")]
 pub mod viewer;
 
 pub use image::Image;

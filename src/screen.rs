@@ -220,6 +220,7 @@ impl Screen {
     }
 
     /// Waits until the driver has done all that it was asked to.
+    #[cfg(feature = "program")]
     pub(crate) fn finish(&self) {
         // SAFETY: the context is current.
         unsafe { self.gl.finish() };
