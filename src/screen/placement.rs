@@ -166,7 +166,7 @@ mod tests {
     fn from_the_window_to_the_picture_and_back() {
         let both = [12, 13].map(|size| placements(size).map(move |placement| (size, placement)));
         for (size, placement) in both.into_iter().flatten() {
-            let mut shown = vec![0_u64; (size * size) as usize];
+            let mut shown = vec![0_i64; (size * size) as usize];
             let extent = placement.extent as i32;
             for y in -50..extent + 50 {
                 for x in -50..extent + 50 {
@@ -186,8 +186,8 @@ mod tests {
             for (number, shown) in (0..).zip(shown) {
                 let pixel = UVec2::new(number % size, number / size);
                 let [first, end] = placement.square_of(pixel, size);
-                let sides = (end - first).as_u64vec2();
-                assert_eq!(sides.x * sides.y, shown, "{placement:?} {pixel}");
+                let area = (end - first).as_i64vec2().element_product();
+                assert_eq!(area, shown, "{placement:?} {pixel}");
             }
         }
     }
