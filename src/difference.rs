@@ -4,11 +4,13 @@
 //! in ulp wherever both samples have the same exponent, it is a whole number, and it can be counted without knowing more of the truth than
 //! its nearest f32.
 
+#[cfg(feature = "program")]
 mod heat;
 mod scale;
 
 use crate::Image;
 use crate::image::display_byte;
+#[cfg(feature = "program")]
 pub use heat::{HeatError, save_heat};
 pub use scale::error_color;
 

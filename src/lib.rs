@@ -29,7 +29,7 @@
 //! | [`camera`] | α: its frames, its sine and cosine |
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
-//! | [`difference`] | how far one picture is from another; the false-colour picture of it |
+//! | [`difference`] | how far one picture is from another, in numbers and in false colours |
 #![cfg_attr(
     feature = "screen",
     doc = "| [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |"
@@ -48,7 +48,7 @@
 //! | feature | what it adds |
 //! | --- | --- |
 //! | `screen` | `screen`: a picture as a texture in the caller's OpenGL context, or in one without a window |
-//! | `program`, the default | `screen`, `report`, `viewer`, and the program itself |
+//! | `program`, the default | `screen`, `report`, `viewer`, `difference::save_heat`, and the program itself |
 //!
 //! # What the picture is
 //!
@@ -79,6 +79,7 @@ pub mod scene;
 #[cfg(feature = "screen")]
 pub mod screen;
 mod stage;
+#[cfg(feature = "program")]
 mod text;
 pub mod tracer;
 #[cfg(feature = "program")]

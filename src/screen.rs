@@ -11,6 +11,7 @@
 #[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
+#[cfg(feature = "program")]
 mod layer;
 mod offscreen;
 mod osmesa;
@@ -21,11 +22,12 @@ mod timed;
 use std::ops::Range;
 use std::rc::Rc;
 
-use glam::{I64Vec2, IVec2, UVec2};
+use glam::{I64Vec2, UVec2};
 use glow::HasContext as _;
 
 use crate::image::{Image, ImageError, MAX_SIZE};
 pub use error::ScreenError;
+#[cfg(feature = "program")]
 pub(crate) use layer::Layer;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
@@ -206,7 +208,8 @@ impl Screen {
 
     /// Fills a rectangle of the bound framebuffer, over what was drawn there. `corner` is its bottom
     /// left pixel, `size` its width and height.
-    pub(crate) fn fill(&self, corner: IVec2, size: UVec2, [red, green, blue]: [u8; 3]) {
+    #[cfg(feature = "program")]
+    pub(crate) fn fill(&self, corner: glam::IVec2, size: UVec2, [red, green, blue]: [u8; 3]) {
         let color = [red, green, blue].map(|byte| f32::from(byte) / 255.0);
         let gl = &self.gl;
         // SAFETY: the context is current.
