@@ -2,6 +2,7 @@
 
 mod actions;
 mod events;
+mod facts;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,18 +12,17 @@ use winit::keyboard::ModifiersState;
 
 use crate::{Image, Kernel, Stage};
 
-use super::action::Action;
 use super::clipboard::Clipboard;
-use super::comparison::{self, Comparing, Errors, WRONG};
+use super::comparison::{self, Comparing, Errors};
 use super::frames::Meter;
-use super::information::{Times, information, name_pixel};
+use super::information::Times;
 use super::playback::Playback;
 use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
-use super::sheet::{Facts, Sheet, frame};
+use super::sheet::Sheet;
 use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
-use super::window::{Mark, View};
+use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
@@ -294,65 +294,6 @@ impl App<'_> {
         }
         self.schedule(event_loop);
         Ok(())
-    }
-
-    /// What the sheet says about the picture.
-    fn facts(&self) -> Facts {
-        let (Some(view), Some(shown)) = (&self.view, &self.shown) else {
-            return Facts::default();
-        };
-        let mut facts = Facts::default();
-        if self.sheet.information {
-            facts.information = information(shown, self.size, self.times);
-        }
-        if self.sheet.names_pixels()
-            && let Some(place) = self.pointer.place()
-            && let Some(pixel) = view.picture_pixel(place)
-        {
-            // One that was given back a moment ago is followed by another.
-            if let Some(picture) = &self.picture {
-                facts.pixel = name_pixel(picture, pixel);
-            }
-            facts.pointer = Some(view.place_of(place));
-        }
-        if let Some(errors) = &self.errors {
-            facts.errors = Some(errors.text(self.size));
-            let rings = errors.done.iter().flat_map(|compared| &compared.rings);
-            facts.rings.extend(rings);
-        }
-        facts.on.push(Action::Stage(self.stage));
-        for (on, action) in [
-            (
-                self.stage == Stage::Animation && self.playback.paused(),
-                Action::Pause,
-            ),
-            (self.errors.is_some(), Action::Errors),
-            (self.sheet.information, Action::Information),
-            (self.sheet.keys_are_shown(), Action::Help),
-        ] {
-            facts.on.extend(on.then_some(action));
-        }
-        facts
-    }
-
-    /// What is drawn over the picture to show single pixels.
-    fn marks(&self, facts: &Facts) -> Vec<Mark> {
-        let Some(view) = &self.view else {
-            return Vec::new();
-        };
-        // A line, as wide as those of the characters.
-        let line = (view.cell().x / 7).max(1) as i32;
-        let rings = facts.rings.iter().flat_map(|&pixel| {
-            let bars = frame(view.square(pixel), 4 * line, line);
-            bars.map(|bar| (bar, WRONG))
-        });
-        let inspected = self.sheet.inspected().into_iter().flat_map(|(pixel, _)| {
-            let square = view.square(pixel);
-            let black = frame(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
-            let white = frame(square, line, line).map(|bar| (bar, [255; 3]));
-            black.into_iter().chain(white)
-        });
-        rings.chain(inspected).collect()
     }
 
     /// Whether a frame that is drawn now is the last one.
