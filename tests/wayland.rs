@@ -63,6 +63,33 @@ fn a_dense_display_gets_the_same_pixels() {
 
 #[test]
 #[ignore = "needs sway, wtype and grim"]
+fn a_floating_window_grows_for_its_panel_and_shrinks_again() {
+    let sway = Sway::start();
+    sway.order("output * resolution 1200x700");
+    sway.order("for_window [title=firsthit] floating enable");
+    let mut viewer = sway.open(&["view", "--stage", "6"]);
+    let becomes = |width: usize| {
+        let wanted = format!("\"width\": {width},");
+        wait_for(&format!("a window {width} pixels wide"), || {
+            let tree = sway.printed("swaymsg", &["-t", "get_tree"]);
+            String::from_utf8(tree)
+                .unwrap()
+                .contains(&wanted)
+                .then_some(())
+        });
+    };
+    becomes(500);
+    sway.type_keys("h");
+    becomes(500 + 56 * 7);
+    sway.type_keys("h");
+    becomes(500);
+    viewer.sleeps();
+    sway.type_keys("q");
+    viewer.left();
+}
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
 fn a_hidden_window_answers_once_it_is_seen_again() {
     let sway = Sway::start();
     let mut viewer = sway.open(&["view"]);
