@@ -13,6 +13,8 @@ pub(super) const HEADING: Color = [252, 180, 60, 255];
 enum Part {
     Text(usize, String, Color),
     /// One cell, filled.
+    Cell(usize, Color),
+    /// The same with a frame, which also shows the colour of the ground.
     Swatch(usize, Color),
 }
 
@@ -23,6 +25,11 @@ pub(super) struct Line(Vec<Part>);
 impl Line {
     pub(super) fn text(mut self, column: usize, text: impl Into<String>, color: Color) -> Line {
         self.0.push(Part::Text(column, text.into(), color));
+        self
+    }
+
+    pub(super) fn cell(mut self, column: usize, [red, green, blue]: [u8; 3]) -> Line {
+        self.0.push(Part::Cell(column, [red, green, blue, 255]));
         self
     }
 
@@ -39,8 +46,14 @@ impl Line {
                 Part::Text(column, text, color) => {
                     board.text_within(at(*column), text.as_str(), *color, clip);
                 }
-                Part::Swatch(column, color) => {
+                Part::Cell(column, color) => {
                     board.fill(Rect::new(at(*column), cell).intersection(clip), *color);
+                }
+                Part::Swatch(column, color) => {
+                    let whole = Rect::new(at(*column), cell);
+                    let line = (cell.x / 7).max(1) as i32;
+                    board.fill(whole.intersection(clip), DIM);
+                    board.fill(whole.grown(-line).intersection(clip), *color);
                 }
             }
         }

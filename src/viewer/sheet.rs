@@ -165,9 +165,15 @@ impl Sheet {
                 // Not over the pixel that it names.
                 let high = |pointer: IVec2| pointer.y < 4 * cell.y as i32;
                 let at_top = !facts.pointer.is_some_and(high);
-                let name = named.map(|text| note(text, layout.picture, cell, at_top));
-                boards.extend(name);
-                boards.extend(message.map(|text| note(text, layout.picture, cell, false)));
+                let notes = [(named, at_top), (message, false)];
+                // At the bottom there is room for one: a message, which goes sooner.
+                let notes = notes
+                    .into_iter()
+                    .skip((message.is_some() && !at_top).into());
+                let board = |(text, at_top): (Option<&str>, bool)| {
+                    text.map(|text| note(text, layout.picture, cell, at_top))
+                };
+                boards.extend(notes.filter_map(board));
             }
         }
         if let Some(menu) = &self.menu {
@@ -220,7 +226,7 @@ impl Sheet {
 /// error, those that are no number, and wrong decisions.
 fn scale() -> [Line; 5] {
     let strip = (0..=24).fold(Line::default(), |line, octave| {
-        line.swatch(octave, error_color(Some(1 << octave)))
+        line.cell(octave, error_color(Some(1 << octave)))
     });
     let labels = [(0, "1"), (8, "2⁸"), (16, "2¹⁶"), (23, "2²⁴ f32 steps")];
     let labels = labels

@@ -218,11 +218,29 @@ impl View {
         }
         if open {
             self.growth.grown = Some([self.surface, size]);
+            self.make_room(size.x - self.surface.x);
         }
         self.growth.awaited = Some(Instant::now() + PATIENCE);
         let asked = PhysicalSize::new(size.x, size.y);
         if let Some(size) = self.window.request_inner_size(asked) {
             self.resize(size);
+        }
+    }
+
+    /// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by
+    /// `growth`, where the desktop says where it is.
+    fn make_room(&self, growth: u32) {
+        let (Ok(place), Some(monitor)) =
+            (self.window.outer_position(), self.window.current_monitor())
+        else {
+            return;
+        };
+        let right = place.x + (self.window.outer_size().width + growth) as i32;
+        let beyond = right - (monitor.position().x + monitor.size().width as i32);
+        let left = (place.x - beyond.max(0)).max(monitor.position().x);
+        if left < place.x {
+            let place = PhysicalPosition::new(left, place.y);
+            self.window.set_outer_position(place);
         }
     }
 
