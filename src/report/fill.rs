@@ -75,7 +75,7 @@ fn fill_blocks(blocks: &mut [[f32; PATTERN]], pattern: &[f32; PATTERN], stores: 
     use x86::*;
     let avx512 = is_x86_feature_detected!("avx512f");
     let avx = is_x86_feature_detected!("avx");
-    // SAFETY: the processor has what the function needs, and the blocks are aligned.
+    // SAFETY: the processor has what the functions need, and the blocks are aligned.
     unsafe {
         match stores {
             Stores::Plain if avx512 => plain_512(blocks, pattern),
@@ -85,6 +85,8 @@ fn fill_blocks(blocks: &mut [[f32; PATTERN]], pattern: &[f32; PATTERN], stores: 
             Stores::NonTemporal if avx => non_temporal_256(blocks, pattern),
             Stores::NonTemporal => non_temporal_128(blocks, pattern),
         }
+        // Non-temporal stores are in no order with those of other threads until they are fenced.
+        std::arch::x86_64::_mm_sfence();
     }
 }
 
@@ -113,8 +115,6 @@ mod x86 {
                         unsafe { $store(part.as_mut_ptr(), vector) };
                     }
                 }
-                // Non-temporal stores are in no order with those of other threads until they are fenced.
-                _mm_sfence();
             }
         };
     }
