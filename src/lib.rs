@@ -42,8 +42,8 @@
 //!
 //! # Features
 //!
-//! Who wants pictures only turns the default off: what is left knows no OpenGL, no window and no command line, and is a third of the
-//! crates to build.
+//! Who wants pictures only turns the default off: what is left knows no OpenGL, no window and no command line, and is less
+//! than half of the crates to build.
 //!
 //! | feature | what it adds |
 //! | --- | --- |
