@@ -452,20 +452,3 @@ fn extreme_scenes_give_what_comes_out() {
         }
     }
 }
-
-#[test]
-fn threads_change_no_bit() {
-    let trace = |threads| {
-        let mut image = Image::new(101).unwrap();
-        Tracer::new(Kernel::Listing, threads)
-            .unwrap()
-            .trace(&Scene::builtin(), Stage::Reflection, 0.9, &mut image)
-            .unwrap();
-        let bits = image.samples().iter().map(|sample| sample.to_bits());
-        bits.collect::<Vec<_>>()
-    };
-    let alone = trace(1);
-    for threads in 2..=4 {
-        assert!(trace(threads) == alone, "{threads} threads");
-    }
-}

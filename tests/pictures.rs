@@ -26,9 +26,9 @@ fn checksum(image: &Image) -> u64 {
     })
 }
 
-fn picture(kernel: Kernel, stage: Stage, frame: u64, threads: usize) -> u64 {
+fn picture(kernel: Kernel, stage: Stage, frame: u64) -> u64 {
     let mut image = Image::new(SIZE).unwrap();
-    let mut tracer = Tracer::new(kernel, threads).unwrap();
+    let mut tracer = Tracer::new(kernel, 1).unwrap();
     tracer
         .trace(&Scene::builtin(), stage, frame_angle(frame), &mut image)
         .unwrap();
@@ -53,7 +53,7 @@ const TRUE_PICTURES: [(Stage, u64, u64); 10] = [
 fn the_true_pictures() {
     for kernel in [Kernel::Exact, Kernel::Reference] {
         for (stage, frame, expected) in TRUE_PICTURES {
-            let got = picture(kernel, stage, frame, 2);
+            let got = picture(kernel, stage, frame);
             assert_eq!(
                 got,
                 expected,
@@ -74,20 +74,39 @@ const OTHER_PICTURES: [(Kernel, u64); 3] = [
 #[test]
 fn the_other_kernels() {
     for (kernel, expected) in OTHER_PICTURES {
-        let got = picture(kernel, Stage::Reflection, 3, 2);
+        let got = picture(kernel, Stage::Reflection, 3);
         assert_eq!(got, expected, "{}: {got:#018x}", kernel.name());
     }
 }
 
+/// Whole, traced over another frame, and with what was decided.
 #[test]
 fn any_number_of_threads() {
-    for (stage, frame, expected) in TRUE_PICTURES {
-        for threads in 1..=8 {
-            assert_eq!(
-                picture(Kernel::Exact, stage, frame, threads),
-                expected,
-                "{threads} threads"
-            );
+    let scene = Scene::builtin();
+    for kernel in Kernel::ALL {
+        let tracers = (1..=8).map(|threads| Tracer::new(kernel, threads).unwrap());
+        let mut tracers: Vec<_> = tracers.collect();
+        let mut retained = vec![Image::new(SIZE).unwrap(); tracers.len()];
+        let mut whole = Image::new(SIZE).unwrap();
+        for (stage, frame, _) in TRUE_PICTURES {
+            let alpha = frame_angle(frame);
+            let mut expected = Image::new(SIZE).unwrap();
+            let decisions = Tracer::new(kernel, 1)
+                .unwrap()
+                .trace_with_decisions(&scene, stage, alpha, &mut expected)
+                .unwrap();
+            for (threads, (tracer, retained)) in (1..).zip(tracers.iter_mut().zip(&mut retained)) {
+                tracer.retrace(&scene, stage, alpha, retained).unwrap();
+                tracer.trace(&scene, stage, alpha, &mut whole).unwrap();
+                let same = same_bits(retained, &expected) && same_bits(&whole, &expected);
+                let decided = tracer.trace_with_decisions(&scene, stage, alpha, &mut whole);
+                let same = same && same_bits(&whole, &expected) && decided.unwrap() == decisions;
+                let kernel = kernel.name();
+                assert!(
+                    same,
+                    "{kernel} stage {stage} frame {frame}, {threads} threads"
+                );
+            }
         }
     }
 }

@@ -150,26 +150,6 @@ fn quadrants_pixel_by_pixel() {
 }
 
 #[test]
-fn threads_change_no_bit() {
-    let trace = |threads| {
-        let mut image = Image::new(101).unwrap();
-        Tracer::new(Kernel::Exact, threads)
-            .unwrap()
-            .trace(&Scene::builtin(), Stage::Reflection, 0.9, &mut image)
-            .unwrap();
-        image
-            .samples()
-            .iter()
-            .map(|sample| sample.to_bits())
-            .collect::<Vec<_>>()
-    };
-    let alone = trace(1);
-    for threads in 2..=8 {
-        assert!(trace(threads) == alone, "{threads} threads");
-    }
-}
-
-#[test]
 fn an_angle_that_is_none_is_refused() {
     let mut tracer = Tracer::new(Kernel::Exact, 1).unwrap();
     for alpha in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
