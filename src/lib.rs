@@ -57,6 +57,8 @@ pub mod camera;
 pub mod difference;
 pub mod image;
 mod number;
+#[cfg(test)]
+mod random;
 pub mod report;
 pub mod scene;
 pub mod screen;
