@@ -73,6 +73,8 @@ pub mod camera;
 pub mod difference;
 pub mod image;
 mod number;
+#[cfg(test)]
+mod random;
 #[cfg(feature = "program")]
 pub mod report;
 pub mod scene;

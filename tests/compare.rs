@@ -1,52 +1,32 @@
 //! Promise: `firsthit compare` says how far two pictures are apart, hides no NaN, and fails beyond its threshold.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test stops at the first surprise"
-)]
-
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use firsthit::Image;
 use firsthit::difference::{Difference, error_color};
 use firsthit::image::display_byte;
 use tempfile::TempDir;
 
+use crate::helpers::{self, bits, printed, program, text};
+
 /// Runs `firsthit compare` with the words of `line` in `folder`.
 fn compare(folder: &TempDir, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_firsthit"))
-        .current_dir(folder)
-        .arg("compare")
-        .args(line.split(' '))
+    program(folder, &format!("compare {line}"))
         .output()
         .unwrap()
 }
 
 /// What it printed; it must have succeeded.
 fn compared(folder: &TempDir, line: &str) -> String {
-    let output = compare(folder, line);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(
-        (output.status.code(), &message[..]),
-        (Some(0), ""),
-        "{line}"
-    );
-    String::from_utf8(output.stdout).unwrap()
+    printed(folder, &format!("compare {line}"))
 }
 
-/// The one line of its failure.
+/// What it said when it failed with `status`.
 fn failed(folder: &TempDir, line: &str, status: i32) -> String {
-    let output = compare(folder, line);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(status), "{line}: {message}");
-    if status == 1 {
-        assert_eq!(message.lines().count(), 1, "{line}: {message}");
-    }
-    message
+    helpers::failed(&compare(folder, line), status, line)
 }
 
 /// What follows `name` in the text of a comparison.
@@ -202,11 +182,7 @@ fn the_threshold_is_the_most_that_passes() {
     assert!(message.contains("up to 2 f32 steps apart"), "{message}");
     // What was found is said all the same.
     let output = compare(&folder, "a.exr b.exr --threshold 1");
-    assert!(
-        String::from_utf8(output.stdout)
-            .unwrap()
-            .contains("2 at most")
-    );
+    assert!(text(&output.stdout).contains("2 at most"));
 }
 
 #[test]
@@ -291,13 +267,6 @@ fn an_exr_comes_back_bit_for_bit() {
         }
         saved(&folder, "a.exr", &image);
         let read = Image::load(folder.path().join("a.exr")).unwrap();
-        let bits = |image: &Image| {
-            image
-                .samples()
-                .iter()
-                .map(|s| s.to_bits())
-                .collect::<Vec<_>>()
-        };
         assert!(bits(&read) == bits(&image), "{size}");
     }
 }

@@ -1,11 +1,10 @@
 //! Promise: an explanation is of the pixel that is traced, with every kernel, in every stage.
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
-
-use std::process::Command;
 
 use firsthit::image::display_byte;
 use firsthit::tracer::{Decision, TraceError};
-use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use firsthit::{Kernel, Scene, Stage, Tracer};
+
+use crate::helpers::{failed, printed, program, trace_with_decisions};
 
 const SIZE: u32 = 48;
 
@@ -24,12 +23,9 @@ fn it_ends_in_the_samples_and_bytes_of_the_picture() {
         Kernel::Double,
         Kernel::Reference,
     ] {
-        let mut tracer = Tracer::new(kernel, 1).unwrap();
+        let tracer = Tracer::new(kernel, 1).unwrap();
         for stage in Stage::ALL {
-            let mut image = Image::new(SIZE).unwrap();
-            let decisions = tracer
-                .trace_with_decisions(&scene, stage, 0.6, &mut image)
-                .unwrap();
+            let (image, decisions) = trace_with_decisions(kernel, &scene, stage, 0.6, SIZE);
             for index in (0..SIZE * SIZE).step_by(7) {
                 let pixel = (index % SIZE, index / SIZE);
                 let text = tracer.explain(&scene, stage, 0.6, SIZE, pixel).unwrap();
@@ -119,40 +115,24 @@ fn a_pixel_outside_of_the_picture_is_refused() {
 
 #[test]
 fn the_command_prints_it() {
-    let program = |arguments: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_firsthit"))
-            .args(arguments)
-            .output()
-            .unwrap()
-    };
-    let output = program(&[
-        "explain", "20", "30", "--stage", "6", "--frame", "2", "--size", "48", "--kernel", "double",
-    ]);
-    assert_eq!(output.status.code(), Some(0));
+    let folder = tempfile::tempdir().unwrap();
+    let line = "explain 20 30 --stage 6 --frame 2 --size 48 --kernel double";
     let tracer = Tracer::new(Kernel::Double, 1).unwrap();
     let text = tracer
         .explain(&Scene::builtin(), Stage::Reflection, 0.6, 48, (20, 30))
         .unwrap();
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), text);
+    assert_eq!(printed(&folder, line), text);
 
-    let refused = program(&["explain", "20", "48", "--stage", "6", "--size", "48"]);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(refused.stdout.is_empty());
-    assert_eq!(
-        String::from_utf8(refused.stderr).unwrap().lines().count(),
-        1
-    );
-    assert_eq!(
-        program(&["explain", "-1", "0", "--stage", "6"])
-            .status
-            .code(),
-        Some(2)
-    );
-    assert_eq!(
-        program(&["explain", "1", "--stage", "6"]).status.code(),
-        Some(2)
-    );
-    assert_eq!(program(&["explain", "1", "1"]).status.code(), Some(2));
+    for (line, status) in [
+        ("explain 20 48 --stage 6 --size 48", 1),
+        ("explain -1 0 --stage 6", 2),
+        ("explain 1 --stage 6", 2),
+        ("explain 1 1", 2),
+    ] {
+        let refused = program(&folder, line).output().unwrap();
+        failed(&refused, status, line);
+        assert!(refused.stdout.is_empty(), "{line}");
+    }
 }
 
 #[test]

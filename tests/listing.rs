@@ -1,15 +1,12 @@
 //! Promise: `listing` is the document's listings as printed. Each of their slips shows, just there and just as the equation
 //! predicts, and nothing else differs from the truth.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test stops at the first surprise"
-)]
 
 use firsthit::camera::{ROUND, frame_angle, sin_cos};
 use firsthit::tracer::{Decision, Seen, TraceError};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use glam::{DVec2, DVec3, dvec2, dvec3};
+
+use crate::helpers::trace_with_decisions;
 
 const SIZE: u32 = 500;
 
@@ -22,12 +19,8 @@ struct Pixel {
     samples: [f32; 3],
 }
 
-fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Vec<Pixel> {
-    let mut image = Image::new(size).unwrap();
-    let decisions = Tracer::new(kernel, 0)
-        .unwrap()
-        .trace_with_decisions(scene, stage, alpha, &mut image)
-        .unwrap();
+fn trace_pixels(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Vec<Pixel> {
+    let (image, decisions) = trace_with_decisions(kernel, scene, stage, alpha, size);
     (0..size * size)
         .zip(decisions)
         .map(|(index, decision)| {
@@ -44,10 +37,10 @@ fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> 
 
 /// Each pixel by `exact` and by `listing`.
 fn both(scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Vec<(Pixel, Pixel)> {
-    let exact = trace(Kernel::Exact, scene, stage, alpha, size);
+    let exact = trace_pixels(Kernel::Exact, scene, stage, alpha, size);
     exact
         .into_iter()
-        .zip(trace(Kernel::Listing, scene, stage, alpha, size))
+        .zip(trace_pixels(Kernel::Listing, scene, stage, alpha, size))
         .collect()
 }
 
@@ -142,7 +135,7 @@ fn a_sphere_behind_the_screen_shows_its_far_side() {
         [([-0.5, 0.0, 0.0], 0.25), ([0.5, 0.5, 2.0], 0.25)],
         TETRAHEDRON_AWAY,
     );
-    let listing = trace(Kernel::Listing, &scene, Stage::Shading, 0.0, SIZE);
+    let listing = trace_pixels(Kernel::Listing, &scene, Stage::Shading, 0.0, SIZE);
     for (number, lit) in [(0, true), (1, false)] {
         let sphere: Vec<_> = listing
             .iter()
@@ -283,7 +276,7 @@ fn solids_are_lit_from_below() {
     let opposite = firsthit::scene::BUILTIN_TOML.replace("[-0.5, -0.5, 0.1]", "[0.5, 0.5, -0.1]");
     let opposite = Scene::from_toml(&opposite).unwrap();
     assert_ne!(builtin, opposite);
-    let opposite = trace(Kernel::Exact, &opposite, Stage::Shading, 0.0, SIZE);
+    let opposite = trace_pixels(Kernel::Exact, &opposite, Stage::Shading, 0.0, SIZE);
     let mut differing = 0;
     for ((exact, listing), opposite) in both(&builtin, Stage::Shading, 0.0, SIZE)
         .into_iter()
@@ -339,7 +332,7 @@ fn the_shadow_of_sphere_2_falls_where_it_should() {
 #[test]
 fn only_the_surface_receives_shadows() {
     let pixels = both(&Scene::builtin(), Stage::Shadow, 0.0, SIZE);
-    let unshadowed = trace(
+    let unshadowed = trace_pixels(
         Kernel::Listing,
         &Scene::builtin(),
         Stage::Shading,
@@ -448,24 +441,10 @@ fn extreme_scenes_give_what_comes_out() {
     );
     for stage in Stage::ALL {
         for alpha in [0.0, 5e-324, -1.7e308] {
-            assert_eq!(trace(Kernel::Listing, &scene, stage, alpha, 9).len(), 81);
+            assert_eq!(
+                trace_pixels(Kernel::Listing, &scene, stage, alpha, 9).len(),
+                81
+            );
         }
-    }
-}
-
-#[test]
-fn threads_change_no_bit() {
-    let trace = |threads| {
-        let mut image = Image::new(101).unwrap();
-        Tracer::new(Kernel::Listing, threads)
-            .unwrap()
-            .trace(&Scene::builtin(), Stage::Reflection, 0.9, &mut image)
-            .unwrap();
-        let bits = image.samples().iter().map(|sample| sample.to_bits());
-        bits.collect::<Vec<_>>()
-    };
-    let alone = trace(1);
-    for threads in 2..=4 {
-        assert!(trace(threads) == alone, "{threads} threads");
     }
 }

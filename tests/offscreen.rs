@@ -1,41 +1,16 @@
 //! A picture that goes through OpenGL without a window comes back bit for bit, whatever library made the context.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test stops at the first surprise"
-)]
-#![allow(
-    clippy::explicit_write,
-    reason = "the test harness hides what `eprintln!` says in a test that passes"
-)]
-
-mod choices;
-
 use std::ffi::c_void;
-use std::io::Write as _;
 
-use choices::choices;
 use firsthit::image::display_byte;
 use firsthit::screen::{Offscreen, Path, ScreenError, Through, TimedScreen};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use glutin::api::egl::device::Device;
 use glutin::api::egl::display::Display;
 
-const WAYS: [Through; 2] = [Through::Egl, Through::OsMesa];
+use crate::helpers::{Random, hard_scene, open};
 
-/// An offscreen for pictures of this size, or `None` where the library is not installed: never so in CI.
-fn open(through: Through, size: u32) -> Option<Offscreen> {
-    match Offscreen::open(through, size) {
-        Ok(offscreen) => Some(offscreen),
-        Err(error @ ScreenError::Missing { .. }) if std::env::var_os("CI").is_none() => {
-            writeln!(std::io::stderr(), "skipped: {error}").unwrap();
-            None
-        }
-        Err(error) => panic!("{}: {error}", through.name()),
-    }
-}
+const WAYS: [Through; 2] = [Through::Egl, Through::OsMesa];
 
 /// A picture whose sample `i` has the bits `bits(i)`.
 fn image(size: u32, bits: impl Fn(u32) -> u32) -> Image {
@@ -132,14 +107,10 @@ fn every_kind_of_float_comes_back_bit_for_bit() {
 #[test]
 fn the_rows_that_changed_are_all_that_need_be_uploaded() {
     let size = 61;
-    let scene = |name| {
-        let path = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
-    };
     let scenes = [
         Scene::builtin(),
-        scene("shared_faces"),
-        scene("light_from_below"),
+        hard_scene("shared_faces"),
+        hard_scene("light_from_below"),
     ];
     let kernels = [
         (Kernel::Exact, 1),
@@ -154,7 +125,8 @@ fn the_rows_that_changed_are_all_that_need_be_uploaded() {
         let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
         let mut image = Image::new(size).unwrap();
         offscreen.show(&image).unwrap();
-        let mut choose = choices();
+        let mut random = Random::new();
+        let mut choose = |count| random.below(count);
         let (mut alpha, mut rows_uploaded) = (0.0, 0);
         let (mut tracer, mut scene, mut stage) = (0, 0, Stage::Reflection);
         for step in 0..1000 {

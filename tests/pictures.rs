@@ -1,17 +1,12 @@
 //! Promise: the same bytes everywhere. A checksum for each kernel and stage, made once, holds on every machine, at every number of
 //! threads, in debug and release, on every architecture.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "a test stops at the first surprise"
-)]
 
-mod choices;
-
-use choices::choices;
 use firsthit::camera::{ROUND, frame_angle};
+use firsthit::report::HARD_SCENES;
 use firsthit::tracer::{Decision, Simd};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+use crate::helpers::{Random, bits, hard_scene, trace, trace_with_decisions};
 
 const SIZE: u32 = 125;
 
@@ -26,13 +21,9 @@ fn checksum(image: &Image) -> u64 {
     })
 }
 
-fn picture(kernel: Kernel, stage: Stage, frame: u64, threads: usize) -> u64 {
-    let mut image = Image::new(SIZE).unwrap();
-    let mut tracer = Tracer::new(kernel, threads).unwrap();
-    tracer
-        .trace(&Scene::builtin(), stage, frame_angle(frame), &mut image)
-        .unwrap();
-    checksum(&image)
+fn picture(kernel: Kernel, stage: Stage, frame: u64) -> u64 {
+    let alpha = frame_angle(frame);
+    checksum(&trace(kernel, &Scene::builtin(), stage, alpha, SIZE))
 }
 
 /// The stages of the built-in scene as the picture's definition has them, at frame 0; then stage 6 at frames 3, 10 and 17.
@@ -53,7 +44,7 @@ const TRUE_PICTURES: [(Stage, u64, u64); 10] = [
 fn the_true_pictures() {
     for kernel in [Kernel::Exact, Kernel::Reference] {
         for (stage, frame, expected) in TRUE_PICTURES {
-            let got = picture(kernel, stage, frame, 2);
+            let got = picture(kernel, stage, frame);
             assert_eq!(
                 got,
                 expected,
@@ -74,20 +65,36 @@ const OTHER_PICTURES: [(Kernel, u64); 3] = [
 #[test]
 fn the_other_kernels() {
     for (kernel, expected) in OTHER_PICTURES {
-        let got = picture(kernel, Stage::Reflection, 3, 2);
+        let got = picture(kernel, Stage::Reflection, 3);
         assert_eq!(got, expected, "{}: {got:#018x}", kernel.name());
     }
 }
 
+/// Whole, traced over another frame, and with what was decided.
 #[test]
 fn any_number_of_threads() {
-    for (stage, frame, expected) in TRUE_PICTURES {
-        for threads in 1..=8 {
-            assert_eq!(
-                picture(Kernel::Exact, stage, frame, threads),
-                expected,
-                "{threads} threads"
-            );
+    let scene = Scene::builtin();
+    for kernel in Kernel::ALL {
+        let tracers = (1..=8).map(|threads| Tracer::new(kernel, threads).unwrap());
+        let mut tracers: Vec<_> = tracers.collect();
+        let mut retained = vec![Image::new(SIZE).unwrap(); tracers.len()];
+        let mut whole = Image::new(SIZE).unwrap();
+        for (stage, frame, _) in TRUE_PICTURES {
+            let alpha = frame_angle(frame);
+            let (expected, decisions) = trace_with_decisions(kernel, &scene, stage, alpha, SIZE);
+            let expected = bits(&expected);
+            for (threads, (tracer, retained)) in (1..).zip(tracers.iter_mut().zip(&mut retained)) {
+                tracer.retrace(&scene, stage, alpha, retained).unwrap();
+                tracer.trace(&scene, stage, alpha, &mut whole).unwrap();
+                let same = bits(retained) == expected && bits(&whole) == expected;
+                let decided = tracer.trace_with_decisions(&scene, stage, alpha, &mut whole);
+                let same = same && bits(&whole) == expected && decided.unwrap() == decisions;
+                let kernel = kernel.name();
+                assert!(
+                    same,
+                    "{kernel} stage {stage} frame {frame}, {threads} threads"
+                );
+            }
         }
     }
 }
@@ -112,9 +119,7 @@ fn with_simd(
 fn any_vector_instructions() {
     let levels = Simd::all();
     eprintln!("vector instructions here: {levels:?}");
-    let scenes = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes")).unwrap();
-    let scenes = scenes.map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
-    let scenes = scenes.map(|text| Scene::from_toml(&text).unwrap());
+    let scenes = HARD_SCENES.iter().map(|(name, _)| hard_scene(name));
     for scene in scenes.chain([Scene::builtin()]) {
         for stage in [Stage::Shading, Stage::Reflection] {
             for alpha in [0.0, 0.9] {
@@ -159,10 +164,7 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
         "light_from_below",
         "shared_faces",
     ]
-    .map(|name| {
-        let path = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        Scene::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
-    });
+    .map(hard_scene);
     let kernels = [
         (Kernel::Exact, 1),
         (Kernel::Exact, 3),
@@ -173,7 +175,8 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
     // Two pictures of two sizes, which the tracers take turns with; now and then somebody else writes into one.
     let mut retained = [61, 96].map(|size| Image::new(size).unwrap());
     let mut whole = retained.clone();
-    let mut choose = choices();
+    let mut random = Random::new();
+    let mut choose = |count| random.below(count);
     for step in 0..3000 {
         let tracer = &mut tracers[if step % 3 == 0 { choose(4) } else { 0 }];
         let scene = &scenes[if step % 5 == 0 { choose(4) } else { 0 }];
@@ -187,19 +190,9 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
             .retrace(scene, stage, alpha, &mut retained[size])
             .unwrap();
         tracer.trace(scene, stage, alpha, &mut whole[size]).unwrap();
-        assert!(same_bits(&retained[size], &whole[size]), "step {step}");
+        let same = bits(&retained[size]) == bits(&whole[size]);
+        assert!(same, "step {step}");
     }
-}
-
-fn same_bits(one: &Image, other: &Image) -> bool {
-    let bits = |image: &Image| {
-        image
-            .samples()
-            .iter()
-            .map(|sample| sample.to_bits())
-            .collect::<Vec<_>>()
-    };
-    bits(one) == bits(other)
 }
 
 /// From N = 1673 on, whole pictures are written past the caches.
@@ -219,10 +212,9 @@ fn a_picture_too_large_for_caches_has_the_same_bytes() {
                     .trace(&scene, Stage::Reflection, alpha, image)
                     .unwrap();
             }
-            assert!(
-                same_bits(whole, retained) && same_bits(shared, retained),
-                "{size}"
-            );
+            let expected = bits(retained);
+            let same = bits(whole) == expected && bits(shared) == expected;
+            assert!(same, "{size}");
         }
     }
 }

@@ -2,27 +2,21 @@
 //! evaluation; and pictures that must be related are, bit for bit.
 //!
 //! The seed is fixed: every run tries the same scenes.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test stops at the first surprise"
-)]
 
-#[path = "properties/aim.rs"]
 mod aim;
-#[path = "properties/model.rs"]
 mod model;
-mod plain;
 
 use aim::aim;
 use firsthit::tracer::Decision;
-use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use firsthit::{Kernel, Scene, Stage};
 use glam::DVec3;
 use model::{Model, angle, any_model, long, model, short, stage};
-use plain::Plain;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError};
+
+use crate::helpers::trace_with_decisions;
+use crate::plain::Plain;
 
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
@@ -49,11 +43,7 @@ struct Frame {
 
 impl Frame {
     fn new(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Frame {
-        let mut image = Image::new(size).unwrap();
-        let decisions = Tracer::new(kernel, 1)
-            .unwrap()
-            .trace_with_decisions(scene, stage, alpha, &mut image)
-            .unwrap();
+        let (image, decisions) = trace_with_decisions(kernel, scene, stage, alpha, size);
         let samples = image.samples().chunks(3);
         let samples = samples.map(|rgb| [rgb[0], rgb[1], rgb[2]].map(f32::to_bits));
         Frame {

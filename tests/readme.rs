@@ -1,5 +1,4 @@
 //! Promise: the README shows what the program does: its pictures are the program's, its keys are the viewer's.
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -8,7 +7,9 @@ use std::path::Path;
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
 use firsthit::report::HARD_SCENES;
-use firsthit::{Image, Kernel, Scene, Stage, Tracer, viewer};
+use firsthit::{Kernel, Scene, Stage, Tracer, viewer};
+
+use crate::helpers::{hard_scene, trace};
 
 /// A picture under tests/images: its name, the scene's name in tests/scenes or none for the built-in scene, N, stage, frame and kernel.
 type Picture = (&'static str, Option<&'static str>, u32, Stage, u64, Kernel);
@@ -68,23 +69,13 @@ fn file(name: &str) -> std::path::PathBuf {
 #[test]
 fn its_pictures_are_traced_pictures() {
     for (name, scene, size, stage, frame, kernel) in PICTURES {
-        let scene = match scene {
-            Some(scene) => {
-                let path = file(&format!("tests/scenes/{scene}.toml"));
-                Scene::from_toml(&fs::read_to_string(path).unwrap()).unwrap()
-            }
-            None => Scene::builtin(),
-        };
+        let scene = scene.map_or_else(Scene::builtin, hard_scene);
         let png = BufReader::new(File::open(file(&format!("tests/images/{name}.png"))).unwrap());
         let mut reader = png::Decoder::new(png).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut bytes).unwrap();
 
-        let mut image = Image::new(size).unwrap();
-        Tracer::new(kernel, 0)
-            .unwrap()
-            .trace(&scene, stage, frame_angle(frame), &mut image)
-            .unwrap();
+        let image = trace(kernel, &scene, stage, frame_angle(frame), size);
         let rows = image.samples().chunks(3 * size as usize).rev();
         let expected: Vec<u8> = rows.flatten().copied().map(display_byte).collect();
         assert!(bytes == expected, "{name}");

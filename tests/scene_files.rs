@@ -1,9 +1,4 @@
 //! Promise: a scene file is read exactly, and what is refused is refused with its line and field, in one line.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "a test stops at the first surprise"
-)]
 
 use firsthit::Scene;
 use firsthit::scene::BUILTIN_TOML;

@@ -1,39 +1,26 @@
 //! Promise: where others stumble, exact and reference make no wrong decision and round every sample correctly; and how far
 //! off fast and double are there is known to the pixel.
 //!
-//! Every scene in `tests/scenes` is one that provokes something, which its first line names. The truth is the plain evaluation
-//! beside this file. It is slow, so it is asked about the pixels on either side of every border, and some others; over the
+//! Every scene in `tests/scenes` is one that provokes something, which its first line names. The truth is the plain evaluation. It is slow, so it is asked about the pixels on either side of every border, and some others; over the
 //! whole frame exact and reference, which go different ways, must agree bit for bit, and the others are measured against them.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stderr,
-    reason = "a test stops at the first surprise, and shows its table"
-)]
 
-mod plain;
-#[path = "stability/table.rs"]
 mod table;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
-use std::sync::Mutex;
-use std::thread;
 
+use firsthit::report::HARD_SCENES;
 use firsthit::tracer::Decision;
-use firsthit::{Image, Kernel, Scene, Stage, Tracer};
-use plain::Plain;
+use firsthit::{Kernel, Scene, Stage};
 use table::{Errors, Row, TABLE};
+
+use crate::helpers::{bits, hard_scene, on_all_cores, trace_with_decisions};
+use crate::plain::Plain;
 
 /// N: a power of two, so that samples at α = 0 are short binary fractions, which scenes can meet exactly.
 const SIZE: u32 = 128;
 
 /// At most about this many pixels of a frame are evaluated plainly.
 const SAMPLED: usize = 400;
-
-fn folder() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/scenes")
-}
 
 struct Frame {
     samples: Vec<u32>,
@@ -42,15 +29,10 @@ struct Frame {
 }
 
 fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64) -> Frame {
-    let mut image = Image::new(SIZE).unwrap();
-    let decisions = Tracer::new(kernel, 1)
-        .unwrap()
-        .trace_with_decisions(scene, stage, alpha, &mut image)
-        .unwrap();
-    let samples = image.samples();
+    let (image, decisions) = trace_with_decisions(kernel, scene, stage, alpha, SIZE);
     Frame {
-        finite: samples.iter().all(|sample| sample.is_finite()),
-        samples: samples.iter().map(|sample| sample.to_bits()).collect(),
+        finite: image.samples().iter().all(|sample| sample.is_finite()),
+        samples: bits(&image),
         decisions,
     }
 }
@@ -120,8 +102,7 @@ fn wrong_pixels<'a>(
 
 /// Checks a row: what is wrong, or the row as it should be.
 fn check(row: &Row) -> Result<(), String> {
-    let text = std::fs::read_to_string(folder().join(row.scene).with_extension("toml")).unwrap();
-    let scene = Scene::from_toml(&text).unwrap();
+    let scene = hard_scene(row.scene);
     let stage = Stage::from_number(row.stage).unwrap();
     let name = format!("{}, stage {}, α = {:?}", row.scene, row.stage, row.alpha);
     let trace = |kernel: Kernel| {
@@ -178,20 +159,8 @@ fn every_error_is_as_the_table_says() {
         "{:56}                fast double  exact                        fast double  exact",
         ""
     );
-    let (rows, problems) = (Mutex::new(TABLE.iter()), Mutex::new(Vec::new()));
-    let next = || rows.lock().unwrap().next();
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().unwrap().get() {
-            scope.spawn(|| {
-                while let Some(row) = next() {
-                    if let Err(problem) = check(row) {
-                        problems.lock().unwrap().push(problem);
-                    }
-                }
-            });
-        }
-    });
-    let problems = problems.into_inner().unwrap();
+    let checked = on_all_cores(TABLE.iter(), check);
+    let problems: Vec<String> = checked.into_iter().filter_map(Result::err).collect();
     assert!(
         problems.is_empty(),
         "{} rows of tests/stability/table.rs are not as they should be:\n{}",
@@ -202,15 +171,10 @@ fn every_error_is_as_the_table_says() {
 
 #[test]
 fn every_scene_is_in_the_table_and_says_what_it_provokes() {
-    let files: BTreeSet<String> = std::fs::read_dir(folder())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .map(|path| {
-            let text = std::fs::read_to_string(&path).unwrap();
-            assert!(text.starts_with("# "), "{}", path.display());
-            path.file_stem().unwrap().to_str().unwrap().to_owned()
-        })
-        .collect();
-    let listed: BTreeSet<String> = TABLE.iter().map(|row| row.scene.to_owned()).collect();
-    assert_eq!(files, listed);
+    let scenes = HARD_SCENES.iter().map(|&(name, text)| {
+        assert!(text.starts_with("# "), "{name}");
+        name
+    });
+    let listed: BTreeSet<_> = TABLE.iter().map(|row| row.scene).collect();
+    assert_eq!(scenes.collect::<BTreeSet<_>>(), listed);
 }

@@ -1,16 +1,10 @@
 //! Promise: every stage shows what the picture's definition says, pixel by pixel.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test stops at the first surprise"
-)]
-
-mod plain;
 
 use firsthit::camera::{ROUND, frame_angle};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
-use plain::Plain;
-use rayon::prelude::*;
+
+use crate::helpers::{on_all_cores, trace, trace_with_decisions};
+use crate::plain::Plain;
 
 /// The kernels that promise to be right, and double, which these scenes are not hard enough for.
 const KERNELS: [Kernel; 3] = [Kernel::Exact, Kernel::Reference, Kernel::Double];
@@ -18,32 +12,30 @@ const KERNELS: [Kernel; 3] = [Kernel::Exact, Kernel::Reference, Kernel::Double];
 /// Traces a frame with each kernel and compares every pixel's decision and every sample with the plain evaluation.
 fn compare(scene: &Scene, stage: Stage, alpha: f64, size: u32) {
     let frames = KERNELS.map(|kernel| {
-        let mut image = Image::new(size).unwrap();
-        let mut tracer = Tracer::new(kernel, 0).unwrap();
-        let decisions = tracer
-            .trace_with_decisions(scene, stage, alpha, &mut image)
-            .unwrap();
+        let (image, decisions) = trace_with_decisions(kernel, scene, stage, alpha, size);
         (kernel, image, decisions)
     });
     let plain = Plain::new(scene, stage, alpha, size, 256);
-    let wrong: Vec<String> = (0..size * size)
-        .into_par_iter()
-        .filter_map(|index| {
-            let (column, row) = (index % size, index / size);
-            let expected = plain.pixel(column, row);
-            frames.iter().find_map(|(kernel, image, decisions)| {
-                let got = (decisions[index as usize], image.pixel(column, row).unwrap());
-                let same =
-                    got.0 == expected.0 && got.1.map(f32::to_bits) == expected.1.map(f32::to_bits);
-                (!same).then(|| {
-                    format!(
-                        "{} at ({column}, {row}): {got:?} instead of {expected:?}",
-                        kernel.name()
-                    )
-                })
+    let pixel = |column: u32, row: u32| {
+        let expected = plain.pixel(column, row);
+        frames.iter().find_map(|(kernel, image, decisions)| {
+            let decision = decisions[(row * size + column) as usize];
+            let got = (decision, image.pixel(column, row).unwrap());
+            let same =
+                got.0 == expected.0 && got.1.map(f32::to_bits) == expected.1.map(f32::to_bits);
+            (!same).then(|| {
+                format!(
+                    "{} at ({column}, {row}): {got:?} instead of {expected:?}",
+                    kernel.name()
+                )
             })
         })
-        .collect();
+    };
+    let wrong = on_all_cores(0..size, |row| {
+        let wrong = (0..size).filter_map(|column| pixel(column, row));
+        wrong.collect::<Vec<String>>()
+    });
+    let wrong = wrong.concat();
     assert!(
         wrong.is_empty(),
         "stage {stage}, α = {alpha}, N = {size}: {} pixels wrong, the first at {}",
@@ -124,11 +116,7 @@ fn other_scenes() {
 #[test]
 fn quadrants_pixel_by_pixel() {
     for size in [500, 501, 7, 2, 1] {
-        let mut image = Image::new(size).unwrap();
-        Tracer::new(Kernel::Exact, 1)
-            .unwrap()
-            .trace(&Scene::builtin(), Stage::Image, 0.0, &mut image)
-            .unwrap();
+        let image = trace(Kernel::Exact, &Scene::builtin(), Stage::Image, 0.0, size);
         for row in 0..size {
             for column in 0..size {
                 // Left and lower quadrants own the line through the middle, which only an even size has.
@@ -146,26 +134,6 @@ fn quadrants_pixel_by_pixel() {
                 );
             }
         }
-    }
-}
-
-#[test]
-fn threads_change_no_bit() {
-    let trace = |threads| {
-        let mut image = Image::new(101).unwrap();
-        Tracer::new(Kernel::Exact, threads)
-            .unwrap()
-            .trace(&Scene::builtin(), Stage::Reflection, 0.9, &mut image)
-            .unwrap();
-        image
-            .samples()
-            .iter()
-            .map(|sample| sample.to_bits())
-            .collect::<Vec<_>>()
-    };
-    let alone = trace(1);
-    for threads in 2..=8 {
-        assert!(trace(threads) == alone, "{threads} threads");
     }
 }
 

@@ -3,34 +3,19 @@
 use std::cmp::Ordering;
 
 use super::{Bounded, DoubleDouble, Doubt, Expression, Real};
+use crate::random::Random;
 
-/// A small generator of its own, so that a failure is the same everywhere (Marsaglia's xorshift).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.next() % count
-    }
-
-    /// A number as a scene has them: short, long, tiny, large, of either sign, or one that nearly cancels another.
-    fn number(&mut self) -> f64 {
-        let sign = if self.below(2) == 0 { 1.0 } else { -1.0 };
-        let long = 1.0 + (self.next() >> 11) as f64 / (1u64 << 53) as f64;
-        sign * match self.below(6) {
-            0 => self.below(16) as f64,
-            1 => self.below(1000) as f64 / 64.0,
-            2 => 1.0 + f64::EPSILON * self.below(4) as f64,
-            3 => long * 1e-30,
-            4 => long * 1e6,
-            _ => long,
-        }
+/// A number as a scene has them: short, long, tiny, large, of either sign, or one that nearly cancels another.
+fn number(random: &mut Random) -> f64 {
+    let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+    let long = 1.0 + (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
+    sign * match random.below(6) {
+        0 => random.below(16) as f64,
+        1 => random.below(1000) as f64 / 64.0,
+        2 => 1.0 + f64::EPSILON * random.below(4) as f64,
+        3 => long * 1e-30,
+        4 => long * 1e6,
+        _ => long,
     }
 }
 
@@ -55,19 +40,19 @@ enum Step {
 fn steps(random: &mut Random) -> Vec<Step> {
     let mut steps = Vec::new();
     for count in 0..14 {
-        let a = random.below(count.max(1)) as usize;
-        let b = random.below(count.max(1)) as usize;
+        let a = random.below(count.max(1));
+        let b = random.below(count.max(1));
         steps.push(match random.below(10) {
-            _ if count < 4 => Step::Exact(random.number()),
-            0 => Step::Sine(random.number()),
-            1 if count % 2 == 0 => Step::Cosine(random.number()),
-            1 => Step::RootOf(random.number().abs()),
+            _ if count < 4 => Step::Exact(number(random)),
+            0 => Step::Sine(number(random)),
+            1 if count % 2 == 0 => Step::Cosine(number(random)),
+            1 => Step::RootOf(number(random).abs()),
             2 | 3 => Step::Add(a, b),
             4 | 5 => Step::Subtract(a, b),
             6 | 7 => Step::Multiply(a, b),
             8 => Step::Root(a, b),
             _ if count % 2 == 0 => Step::Divide(a, b),
-            _ => Step::Power(a, [1, 2, 7, 1000][random.below(4) as usize]),
+            _ => Step::Power(a, [1, 2, 7, 1000][random.below(4)]),
         });
     }
     steps
@@ -121,7 +106,7 @@ fn check<R: Real<Doubt = Doubt>>(number: R, truth: Expression, what: &dyn Fn() -
 
 #[test]
 fn what_is_not_in_doubt_is_right() {
-    let mut random = Random(0x2545_f491_4f6c_dd1d);
+    let mut random = Random::new();
     let (mut asked, mut bounded_silent, mut double_silent) = (0, 0, 0);
     for _ in 0..1500 {
         let steps = steps(&mut random);

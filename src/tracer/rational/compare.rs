@@ -2,7 +2,6 @@
 //! number that cannot tell says so.
 
 use bumpalo::Bump;
-use rayon::prelude::*;
 
 use super::super::arena::Arena;
 use super::super::decision::Decision;
@@ -117,7 +116,7 @@ pub(super) fn compare(
         .map(|(lowest, arena)| Ladder::new(scene, stage, 0.0, size, lowest, arena))
         .collect();
     // Each chunk has one session of expressions.
-    let chunks = pixels.par_chunks(64).map(|pixels| {
+    let chunks = pixels.chunks(64).map(|pixels| {
         let expected = pixels
             .iter()
             .map(|&(column, row)| definition.decision(column, row));
