@@ -8,7 +8,7 @@ use crate::random::Random;
 /// A number as a scene has them: short, long, tiny, large, of either sign, or one that nearly cancels another.
 fn number(random: &mut Random) -> f64 {
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
-    let long = 1.0 + (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
+    let long = 1.0 + random.fraction();
     sign * match random.below(6) {
         0 => random.below(16) as f64,
         1 => random.below(1000) as f64 / 64.0,

@@ -1,9 +1,9 @@
 //! What is made to happen exactly at a pixel's sample, or a few ulp beside it.
 
 use glam::DVec3;
-use proptest::prelude::*;
 
 use super::model::Model;
+use crate::helpers::Random;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Aim {
@@ -88,22 +88,22 @@ const ALL: [What; 21] = [
     What::LightAlongTheEye,
 ];
 
-pub(crate) fn aim() -> impl Strategy<Value = Aim> {
-    let place = || 0.0..1.0;
-    (
-        proptest::sample::select(&ALL[..]),
-        (place(), place()),
-        0usize..6,
-        prop_oneof![Just(0), -3..=3],
-        prop_oneof![Just(0.0), Just(0.625), Just(1.25), 0.0..2.0],
-    )
-        .prop_map(|(what, place, solid, ulps, depth)| Aim {
-            what,
-            place,
-            solid,
-            ulps,
-            depth,
-        })
+pub(crate) fn aim(random: &mut Random) -> Aim {
+    Aim {
+        what: ALL[random.below(ALL.len())],
+        place: (random.fraction(), random.fraction()),
+        solid: random.below(6),
+        ulps: match random.below(2) {
+            0 => 0,
+            _ => random.below(7) as i32 - 3,
+        },
+        depth: match random.below(4) {
+            0 => 0.0,
+            1 => 0.625,
+            2 => 1.25,
+            _ => 2.0 * random.fraction(),
+        },
+    }
 }
 
 /// `x`, `ulps` f64s on.

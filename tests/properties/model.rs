@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use firsthit::{Scene, Stage};
 use glam::DVec3;
-use proptest::collection::vec;
-use proptest::prelude::*;
+
+use crate::helpers::Random;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
@@ -22,8 +22,13 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// As a scene file; `None` for a scene that is refused, such as one with a flat tetrahedron.
+    /// `None` for a scene that is refused, such as one with a flat tetrahedron.
     pub(crate) fn scene(&self) -> Option<Scene> {
+        Scene::from_toml(&self.text()).ok()
+    }
+
+    /// As a scene file.
+    pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         let triple = |v: DVec3| format!("{:?}", v.to_array());
         // No two solids of one colour, no channel of one value.
@@ -37,15 +42,15 @@ impl Model {
                 text,
                 "[surface]\nheight = {height:?}\nhalf_width = {half_width:?}"
             )
-            .ok()?;
+            .unwrap();
         }
         writeln!(
             text,
             "[light]\ndirection = {}\nintensity = {bright}\nambient_intensity = {bright}",
             triple(self.light)
         )
-        .ok()?;
-        writeln!(text, "[material]\nexponent = {}", self.exponent).ok()?;
+        .unwrap();
+        writeln!(text, "[material]\nexponent = {}", self.exponent).unwrap();
         let order = |length: usize| -> Vec<usize> {
             if self.backwards {
                 (0..length).rev().collect()
@@ -60,7 +65,7 @@ impl Model {
                 text,
                 "[[sphere]]\ncenter = {center}\nradius = {radius:?}\ncolor = {color}"
             )
-            .ok()?;
+            .unwrap();
         }
         for i in order(self.tetrahedra.len()) {
             let vertices = self.tetrahedra[i].map(|v| v.to_array());
@@ -69,9 +74,29 @@ impl Model {
                 text,
                 "[[tetrahedron]]\nvertices = {vertices:?}\ncolor = {color}"
             )
-            .ok()?;
+            .unwrap();
         }
-        Scene::from_toml(&text).ok()
+        text
+    }
+
+    /// The same with less: each without its surface, or without one of its solids.
+    pub(crate) fn simpler(&self) -> Vec<Model> {
+        let mut simpler = Vec::new();
+        let mut without = |remove: &dyn Fn(&mut Model)| {
+            let mut model = self.clone();
+            remove(&mut model);
+            simpler.push(model);
+        };
+        if self.surface.is_some() {
+            without(&|model| model.surface = None);
+        }
+        for i in 0..self.spheres.len() {
+            without(&|model| _ = model.spheres.remove(i));
+        }
+        for i in 0..self.tetrahedra.len() {
+            without(&|model| _ = model.tetrahedra.remove(i));
+        }
+        simpler
     }
 
     /// The same with every point changed.
@@ -87,67 +112,69 @@ impl Model {
     }
 }
 
+/// Chooses a coordinate.
+pub(crate) type Coordinate = fn(&mut Random) -> f64;
+
 /// A multiple of 1/64: where these meet samples, they meet them exactly.
-pub(crate) fn short() -> impl Strategy<Value = f64> + Clone {
-    (-56..=56).prop_map(|k| f64::from(k) / 64.0)
+pub(crate) fn short(random: &mut Random) -> f64 {
+    (random.below(113) as f64 - 56.0) / 64.0
 }
 
 /// Any f64 of that size.
-pub(crate) fn long() -> impl Strategy<Value = f64> + Clone {
-    -0.875..0.875
-}
-
-fn point(coordinate: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = DVec3> {
-    (coordinate.clone(), coordinate.clone(), coordinate).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+pub(crate) fn long(random: &mut Random) -> f64 {
+    0.875 * (2.0 * random.fraction() - 1.0)
 }
 
 /// Up to three spheres and up to two tetrahedra, mostly on a surface.
-pub(crate) fn model(
-    coordinate: impl Strategy<Value = f64> + Clone + 'static,
-) -> impl Strategy<Value = Model> {
-    let radius = || coordinate.clone().prop_map(|r| 0.015625 + r.abs() / 2.0);
-    let surface = (coordinate.clone(), radius()).prop_map(|(h, w)| (h / 2.0 - 0.4375, 2.0 * w));
-    let corners = || std::array::from_fn(|_| point(coordinate.clone()).boxed());
-    let tetrahedron: [_; 4] = corners();
-    (
-        proptest::option::weighted(0.85, surface),
-        point(coordinate.clone()).prop_filter("a light", |d| *d != DVec3::ZERO),
-        prop_oneof![Just(1), Just(7), Just(1000), Just(1_000_000)],
-        vec((point(coordinate.clone()), radius()), 0..=3),
-        vec(tetrahedron, 0..=2),
-    )
-        .prop_map(|(surface, light, exponent, spheres, tetrahedra)| Model {
-            surface,
-            light: DVec3::new(light.x, -light.y, light.z),
-            brightness: 0,
-            exponent,
-            spheres,
-            tetrahedra,
-            backwards: false,
-        })
+pub(crate) fn model(random: &mut Random, coordinate: Coordinate) -> Model {
+    let radius = |random: &mut Random| 0.015625 + coordinate(random).abs() / 2.0;
+    let point = |random: &mut Random| {
+        DVec3::new(coordinate(random), coordinate(random), coordinate(random))
+    };
+    let surface = random.below(20) < 17;
+    Model {
+        surface: surface.then(|| (coordinate(random) / 2.0 - 0.4375, 2.0 * radius(random))),
+        light: std::iter::repeat_with(|| point(random))
+            .find(|light| *light != DVec3::ZERO)
+            .unwrap(),
+        brightness: 0,
+        exponent: [1, 7, 1000, 1_000_000][random.below(4)],
+        spheres: (0..random.below(4))
+            .map(|_| (point(random), radius(random)))
+            .collect(),
+        tetrahedra: (0..random.below(3))
+            .map(|_| [(); 4].map(|()| point(random)))
+            .collect(),
+        backwards: false,
+    }
 }
 
 /// Coordinates of either kind, all of a scene of one.
-pub(crate) fn any_model() -> impl Strategy<Value = Model> {
-    prop_oneof![model(short()), model(long())]
+pub(crate) fn any_model(random: &mut Random) -> Model {
+    let coordinate = [short, long][random.below(2)];
+    model(random, coordinate)
 }
 
 /// α = 0 half of the time, where samples are met exactly.
-pub(crate) fn angle() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => Just(0.0),
-        2 => (0u64..21).prop_map(firsthit::camera::frame_angle),
-        1 => -10.0..10.0,
-        1 => prop_oneof![Just(1e-9), Just(std::f64::consts::FRAC_PI_2), Just(1e22)],
-    ]
+pub(crate) fn angle(random: &mut Random) -> f64 {
+    match random.below(8) {
+        0..4 => 0.0,
+        4 | 5 => firsthit::camera::frame_angle(random.below(21) as u64),
+        6 => 20.0 * random.fraction() - 10.0,
+        _ => [1e-9, std::f64::consts::FRAC_PI_2, 1e22][random.below(3)],
+    }
 }
 
-pub(crate) fn stage() -> impl Strategy<Value = Stage> {
-    let stages = [
+/// The reflection two times of three.
+pub(crate) fn stage(random: &mut Random) -> Stage {
+    let others = [
         Stage::Spheres,
         Stage::Tetrahedron,
         Stage::Shading,
         Stage::Shadow,
     ];
-    prop_oneof![1 => proptest::sample::select(stages.to_vec()), 2 => Just(Stage::Reflection)]
+    match random.below(3) {
+        0 => others[random.below(4)],
+        _ => Stage::Reflection,
+    }
 }
