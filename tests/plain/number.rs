@@ -151,7 +151,8 @@ impl Add for &Number {
 impl Sub for &Number {
     type Output = Number;
     fn sub(self, other: &Number) -> Number {
-        self + &-other
+        let difference = self.context().sub(self.value.repr(), other.value.repr());
+        Number::new(difference.unwrap(), self.error.max(other.error), self.bits)
     }
 }
 
