@@ -7,14 +7,16 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use exr::prelude::{Compression, FlatSamples, read_all_flat_layers_from_file};
+use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
 use firsthit::screen::{Offscreen, Through};
 use firsthit::{Image, Kernel, Scene, Stage, scene};
 use tempfile::TempDir;
 
-use crate::helpers::{self, PROGRAM, bits, open, printed, program, succeeded, text, trace, words};
+use crate::helpers::{
+    self, PROGRAM, bits, exr_bits, open, printed, program, succeeded, text, trace, words,
+};
 
 /// The program under `sh`, after `setup`.
 fn program_after(setup: &str, folder: &TempDir, line: &str) -> Command {
@@ -84,32 +86,6 @@ fn next_frame(reader: &mut png::Reader<BufReader<File>>) -> Vec<u8> {
     let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut bytes).unwrap();
     bytes
-}
-
-/// The samples of an EXR file as bits, in the order of [`Image::samples`].
-fn exr_bits(path: &Path) -> Vec<u32> {
-    let file = read_all_flat_layers_from_file(path).unwrap();
-    let [layer] = &file.layer_data[..] else {
-        panic!("{} parts", file.layer_data.len());
-    };
-    let (width, height) = (layer.size.width(), layer.size.height());
-    let channels = &layer.channel_data.list;
-    let mut bits = vec![0; width * height * 3];
-    assert_eq!(channels.len(), 3);
-    for channel in channels {
-        let place = ["R", "G", "B"]
-            .iter()
-            .position(|name| channel.name.eq_case_insensitive(name))
-            .unwrap();
-        let FlatSamples::F32(samples) = &channel.sample_data else {
-            panic!("not 32-bit floats");
-        };
-        for (i, sample) in samples.iter().enumerate() {
-            let (column, row) = (i % width, height - 1 - i / width);
-            bits[(row * width + column) * 3 + place] = sample.to_bits();
-        }
-    }
-    bits
 }
 
 #[test]

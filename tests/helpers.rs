@@ -5,10 +5,12 @@ mod random;
 
 use std::fmt::Display;
 use std::io::Write as _;
+use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::Mutex;
 use std::thread;
 
+use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
 use firsthit::report::HARD_SCENES;
 use firsthit::screen::{Offscreen, ScreenError, Through};
 use firsthit::tracer::Decision;
@@ -46,6 +48,32 @@ pub(crate) fn trace_with_decisions(
 /// The samples' bits, which tell signed zeros and NaNs apart.
 pub(crate) fn bits(image: &Image) -> Vec<u32> {
     image.samples().iter().map(|s| s.to_bits()).collect()
+}
+
+/// The samples of an EXR file as bits, in the order of [`Image::samples`].
+pub(crate) fn exr_bits(path: &Path) -> Vec<u32> {
+    let file = read_all_flat_layers_from_file(path).unwrap();
+    let [layer] = &file.layer_data[..] else {
+        panic!("{} parts", file.layer_data.len());
+    };
+    let (width, height) = (layer.size.width(), layer.size.height());
+    let channels = &layer.channel_data.list;
+    let mut bits = vec![0; width * height * 3];
+    assert_eq!(channels.len(), 3);
+    for channel in channels {
+        let place = ["R", "G", "B"]
+            .iter()
+            .position(|name| channel.name.eq(name))
+            .unwrap();
+        let FlatSamples::F32(samples) = &channel.sample_data else {
+            panic!("not 32-bit floats");
+        };
+        for (i, sample) in samples.iter().enumerate() {
+            let (column, row) = (i % width, height - 1 - i / width);
+            bits[(row * width + column) * 3 + place] = sample.to_bits();
+        }
+    }
+    bits
 }
 
 /// The scene of that name in `tests/scenes`.

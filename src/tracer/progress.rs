@@ -18,7 +18,7 @@ impl Progress {
         self.0.store(0, Relaxed);
     }
 
-    pub(super) fn add(&self, rows: u32) {
+    pub(crate) fn add(&self, rows: u32) {
         self.0.fetch_add(rows, Relaxed);
     }
 }

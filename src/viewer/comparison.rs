@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use crate::difference::{error_color, steps};
 use crate::tracer::{Decision, Progress};
-use crate::{Image, Kernel, Scene, Tracer};
+use crate::{Image, Kernel, Tracer};
 
 use super::tracing::Frame;
 use super::worker::Worker;
@@ -111,8 +111,13 @@ impl Comparing {
     ) -> Result<Comparing, ViewerError> {
         let (scene, size, threads) = (options.scene.clone(), options.size, options.threads);
         let worker = Worker::start("comparing", wake, move |frame, reply| {
-            let answer = compare(&scene, size, threads, frame, &mut |kernel, progress| {
-                reply(Reply::Begun(kernel, progress));
+            let answer = compare(frame, |kernel| {
+                let mut image = Image::new(size)?;
+                let mut tracer = Tracer::new(kernel, threads)?;
+                reply(Reply::Begun(kernel, tracer.progress()));
+                let Frame { stage, alpha, .. } = frame;
+                let decisions = tracer.trace_with_decisions(&scene, stage, alpha, &mut image)?;
+                Ok((image, decisions))
             });
             reply(answer.map_or_else(Reply::Failed, Reply::Done));
         })
@@ -136,20 +141,11 @@ impl Comparing {
     }
 }
 
+/// How far `frame` is from the truth; `trace` gives the picture of a kernel, and what was decided for each pixel.
 fn compare(
-    scene: &Scene,
-    size: u32,
-    threads: usize,
     frame: Frame,
-    begin: &mut dyn FnMut(Kernel, Progress),
+    mut trace: impl FnMut(Kernel) -> Result<(Image, Vec<Decision>), ViewerError>,
 ) -> Result<Compared, ViewerError> {
-    let mut trace = |kernel| -> Result<(Image, Vec<Decision>), ViewerError> {
-        let mut image = Image::new(size)?;
-        let mut tracer = Tracer::new(kernel, threads)?;
-        begin(kernel, tracer.progress());
-        let decisions = tracer.trace_with_decisions(scene, frame.stage, frame.alpha, &mut image)?;
-        Ok((image, decisions))
-    };
     let (mut image, decisions) = trace(frame.kernel)?;
     let (truth, true_decisions) = trace(Kernel::Reference)?;
     let wrong: Vec<bool> = decisions
@@ -180,7 +176,7 @@ fn compare(
     Ok(Compared {
         frame,
         image: Arc::new(image),
-        rings: rings(&wrong, size as usize),
+        rings: rings(&wrong, truth.size() as usize),
         wrong: wrong.iter().filter(|&&wrong| wrong).count(),
         misrounded,
         largest,
@@ -220,9 +216,19 @@ mod tests {
             ..Errors::default()
         };
         let mut begun = Vec::new();
-        let compared = compare(&Scene::builtin(), 40, 1, frame, &mut |kernel, progress| {
-            errors.tracing = Some((kernel, progress));
+        let compared = compare(frame, |kernel| {
+            let progress = Progress::default();
+            errors.tracing = Some((kernel, progress.clone()));
             begun.push(errors.text(40));
+            progress.add(40);
+            let (mut image, mut decisions) = (Image::new(40)?, vec![Decision::Background; 1600]);
+            // One pixel that is decided wrongly, and one that is three steps off.
+            if kernel == Kernel::Fast {
+                decisions[5] = Decision::Surface;
+                image.samples_mut()[3 * 5] = 0.5;
+                image.samples_mut()[3 * 7] = f32::from_bits(3);
+            }
+            Ok((image, decisions))
         });
         let compared = compared.unwrap();
         assert!(begun[0].starts_with("comparing fast, tracing fast 0 % … "));
@@ -233,8 +239,12 @@ mod tests {
                 .starts_with("comparing fast, tracing reference 100 % … ")
         );
         errors.done = Some(compared);
-        assert!(errors.text(40).starts_with("fast against reference\n"));
-        assert_eq!(errors.text(40).lines().count(), 3);
+        assert_eq!(
+            errors.text(40),
+            "fast against reference\n\
+             wrong pixels: 1 (green, single ones ringed)\n\
+             misrounded samples: 2, at most 3 f32 steps off"
+        );
     }
 
     #[test]
