@@ -72,6 +72,7 @@ pub(crate) trait Real:
 impl Real for f64 {
     type Doubt = Infallible;
 
+    #[inline]
     fn exact(value: f64) -> f64 {
         value
     }
@@ -80,6 +81,7 @@ impl Real for f64 {
         sin_cos(alpha)
     }
 
+    #[inline]
     fn sqrt(self) -> f64 {
         f64::sqrt(self)
     }
@@ -92,11 +94,13 @@ impl Real for f64 {
         libm::exp(f64::from(exponent) * libm::log1p(-self))
     }
 
+    #[inline]
     fn sign(self) -> Result<Ordering, Infallible> {
         // A NaN cannot come up: a scene's numbers are finite and far from overflow, and nothing divides by 0.
         Ok(self.partial_cmp(&0.0).unwrap_or(Ordering::Equal))
     }
 
+    #[inline]
     fn to_sample(self) -> Result<f32, Infallible> {
         // + 0 turns −0 into +0 and changes nothing else.
         Ok(self as f32 + 0.0)
@@ -110,6 +114,7 @@ impl Real for f64 {
 impl Real for f32 {
     type Doubt = Infallible;
 
+    #[inline]
     fn exact(value: f64) -> f32 {
         value as f32
     }
@@ -119,6 +124,7 @@ impl Real for f32 {
         (sin as f32, cos as f32)
     }
 
+    #[inline]
     fn sqrt(self) -> f32 {
         f32::sqrt(self)
     }
@@ -130,11 +136,13 @@ impl Real for f32 {
         libm::expf(exponent as f32 * libm::log1pf(-self))
     }
 
+    #[inline]
     fn sign(self) -> Result<Ordering, Infallible> {
         // A NaN, which a scene of extreme numbers can produce in 24 bits, counts as 0.
         Ok(self.partial_cmp(&0.0).unwrap_or(Ordering::Equal))
     }
 
+    #[inline]
     fn to_sample(self) -> Result<f32, Infallible> {
         // A NaN or an infinity from numbers that 24 bits or their exponents cannot hold is no sample, and a zero is +0.
         Ok(if self > 0.0 { self.min(f32::MAX) } else { 0.0 })

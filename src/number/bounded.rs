@@ -42,6 +42,7 @@ pub(crate) struct Bounded {
 
 impl Bounded {
     /// A number that the truth is not below.
+    #[inline]
     pub(crate) fn at_least(self) -> f64 {
         // A little more than the error takes care of the rounding here; NaN and infinities say nothing.
         let low = self.value - (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
@@ -49,27 +50,32 @@ impl Bounded {
     }
 
     /// A number that the truth is not above.
+    #[inline]
     pub(crate) fn at_most(self) -> f64 {
         -(-self).at_least()
     }
 
     /// What it is about.
+    #[inline]
     pub(crate) fn value(self) -> f64 {
         self.value
     }
 
     /// How far the truth can be from that.
+    #[inline]
     pub(crate) fn error(self) -> f64 {
         self.error
     }
 
     /// Whether it is known to be 0.
+    #[inline]
     pub(crate) fn is_zero(self) -> bool {
         self.value == 0.0 && self.error == 0.0
     }
 }
 
 /// Whether a · b is an f64: their significant bits together are no more than an f64 has, and nothing underflows.
+#[inline]
 fn is_exact_product(a: f64, b: f64) -> bool {
     let zeros = |x: f64| (x.to_bits() | 1 << (f64::MANTISSA_DIGITS - 1)).trailing_zeros();
     zeros(a) + zeros(b) >= f64::MANTISSA_DIGITS && (a * b).abs() > UNDERFLOW
@@ -77,6 +83,7 @@ fn is_exact_product(a: f64, b: f64) -> bool {
 
 impl Add for Bounded {
     type Output = Bounded;
+    #[inline]
     fn add(self, other: Bounded) -> Bounded {
         let (value, rounded_off) = two_sum(self.value, other.value);
         Bounded {
@@ -88,6 +95,7 @@ impl Add for Bounded {
 
 impl Neg for Bounded {
     type Output = Bounded;
+    #[inline]
     fn neg(self) -> Bounded {
         Bounded {
             value: -self.value,
@@ -98,6 +106,7 @@ impl Neg for Bounded {
 
 impl Sub for Bounded {
     type Output = Bounded;
+    #[inline]
     fn sub(self, other: Bounded) -> Bounded {
         self + -other
     }
@@ -105,6 +114,7 @@ impl Sub for Bounded {
 
 impl Mul for Bounded {
     type Output = Bounded;
+    #[inline]
     fn mul(self, other: Bounded) -> Bounded {
         if self.is_zero() || other.is_zero() {
             return Bounded::exact(0.0);
@@ -130,6 +140,7 @@ impl Mul for Bounded {
 
 impl Div for Bounded {
     type Output = Bounded;
+    #[inline]
     fn div(self, other: Bounded) -> Bounded {
         // A divisor known to fewer than 26 bits tells nothing worth knowing.
         let divisor = other.value.abs();
@@ -152,6 +163,7 @@ impl Div for Bounded {
 impl Real for Bounded {
     type Doubt = Doubt;
 
+    #[inline]
     fn exact(value: f64) -> Bounded {
         Bounded { value, error: 0.0 }
     }
@@ -169,6 +181,7 @@ impl Real for Bounded {
         (rounded(sin), rounded(cos))
     }
 
+    #[inline]
     fn sqrt(self) -> Bounded {
         if self.is_zero() {
             return self;
@@ -197,6 +210,7 @@ impl Real for Bounded {
         known.into()
     }
 
+    #[inline]
     fn sign(self) -> Result<Ordering, Doubt> {
         if self.value > self.error {
             Ok(Ordering::Greater)
@@ -209,6 +223,7 @@ impl Real for Bounded {
         }
     }
 
+    #[inline]
     fn to_sample(self) -> Result<f32, Doubt> {
         if self.error == 0.0 {
             return Ok(self.value as f32 + 0.0);

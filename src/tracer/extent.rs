@@ -25,6 +25,7 @@ pub(super) struct Extents<'f> {
 }
 
 impl Extent {
+    #[inline]
     pub(super) fn holds(&self, column: u32, row: u32) -> bool {
         self.columns.contains(&column.into()) && self.rows.contains(&row.into())
     }

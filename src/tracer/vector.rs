@@ -15,6 +15,7 @@ pub(crate) struct Vector<R> {
 }
 
 impl<R: Real> Vector<R> {
+    #[inline]
     pub(crate) fn new(x: R, y: R, z: R) -> Self {
         Vector { x, y, z }
     }
@@ -24,10 +25,12 @@ impl<R: Real> Vector<R> {
         Vector::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
     }
 
+    #[inline]
     pub(crate) fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
+    #[inline]
     pub(crate) fn cross(self, other: Self) -> Self {
         Vector::new(
             self.y * other.z - self.z * other.y,
@@ -36,19 +39,23 @@ impl<R: Real> Vector<R> {
         )
     }
 
+    #[inline]
     pub(crate) fn squared_length(self) -> R {
         self.dot(self)
     }
 
+    #[inline]
     pub(crate) fn length(self) -> R {
         self.squared_length().sqrt()
     }
 
     /// Component by component, as light and colour multiply.
+    #[inline]
     pub(crate) fn times(self, other: Self) -> Self {
         Vector::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 
+    #[inline]
     pub(crate) fn divided_by(self, divisor: R) -> Self {
         Vector::new(self.x / divisor, self.y / divisor, self.z / divisor)
     }
@@ -56,6 +63,7 @@ impl<R: Real> Vector<R> {
 
 impl<R: Real> Add for Vector<R> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Vector::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
@@ -63,6 +71,7 @@ impl<R: Real> Add for Vector<R> {
 
 impl<R: Real> Sub for Vector<R> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Vector::new(self.x - other.x, self.y - other.y, self.z - other.z)
     }
@@ -70,6 +79,7 @@ impl<R: Real> Sub for Vector<R> {
 
 impl<R: Real> Neg for Vector<R> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Vector::new(-self.x, -self.y, -self.z)
     }
@@ -77,6 +87,7 @@ impl<R: Real> Neg for Vector<R> {
 
 impl<R: Real> Mul<R> for Vector<R> {
     type Output = Self;
+    #[inline]
     fn mul(self, factor: R) -> Self {
         Vector::new(self.x * factor, self.y * factor, self.z * factor)
     }

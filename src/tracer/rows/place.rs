@@ -26,6 +26,7 @@ impl Screen {
     }
 
     /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
+    #[inline]
     pub(super) fn place(&self, number: u32) -> f64 {
         3.0 * (f64::from(number) - self.half)
     }
