@@ -70,7 +70,7 @@ impl Errors {
         if let Some(compared) = &self.done {
             lines.push(format!(
                 "{} against reference\n\
-                 wrong pixels: {} (green, single ones framed)\n\
+                 wrong pixels: {} (green, single ones ringed)\n\
                  misrounded samples: {}, at most {} f32 steps off",
                 compared.frame.kernel.name(),
                 compared.wrong,

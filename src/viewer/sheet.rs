@@ -240,13 +240,13 @@ fn scale() -> [Line; 5] {
         labels,
         swatch(error_color(Some(0)), "exact"),
         swatch(error_color(None), "NaN"),
-        swatch(WRONG, "wrong decision; single ones are framed"),
+        swatch(WRONG, "wrong decision; single ones are ringed"),
     ]
 }
 
-/// The frame around a pixel of the picture that is drawn as `square`, `width` pixels wide and `apart`
+/// The ring around a pixel of the picture that is drawn as `square`, `width` pixels wide and `apart`
 /// from it: four bars.
-pub(super) fn frame(square: Rect, apart: i32, width: i32) -> [Rect; 4] {
+pub(super) fn ring(square: Rect, apart: i32, width: i32) -> [Rect; 4] {
     let (inner, outer) = (square.grown(apart), square.grown(apart + width));
     let bar = |min: [i32; 2], max: [i32; 2]| Rect {
         min: min.into(),
@@ -265,9 +265,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_frame_goes_all_around_and_leaves_the_square_free() {
+    fn a_ring_goes_all_around_and_leaves_the_square_free() {
         let square = Rect::new(IVec2::new(10, 20), UVec2::new(3, 5));
-        let bars = frame(square, 1, 2);
+        let bars = ring(square, 1, 2);
         let area = |rect: &Rect| rect.size().element_product();
         assert_eq!(bars.iter().map(area).sum::<u32>(), 9 * 11 - 5 * 7);
         for bar in bars {

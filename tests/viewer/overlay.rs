@@ -247,8 +247,8 @@ fn a_click_works_the_pixel_through_as_explain_does() {
         assert_eq!(session.program.line(line), line);
     }
     let picture = (500, Stage::Reflection, 0.0);
-    let framed = Some([255, 499 - 202]);
-    session.shows_beside_panel(500, picture, framed, "viewer-inspected.png");
+    let ringed = Some([255, 499 - 202]);
+    session.shows_beside_panel(500, picture, ringed, "viewer-inspected.png");
     session.press_ctrl(u32::from('c'));
     assert_eq!(session.clipboard(), text);
     session.screenshot("viewer-copied.png");
@@ -331,12 +331,12 @@ fn the_error_view_shows_where_a_kernel_is_wrong() {
 }
 
 #[test]
-fn a_single_wrong_pixel_is_framed() {
+fn a_single_wrong_pixel_is_ringed() {
     let Some(session) = Session::start(&["view", "--stage", "6", "--kernel", "fast"]) else {
         return;
     };
     session.type_keys("e");
-    // Only the touching ray at column 255, row 202 is decided wrongly: a frame around it.
+    // Only the touching ray at column 255, row 202 is decided wrongly: a ring around it.
     let green = |left: usize, top: usize, side: usize| {
         let pixels = session.pixels().unwrap();
         let rows = pixels.bytes.chunks(pixels.width).skip(top).take(side);
@@ -345,12 +345,12 @@ fn a_single_wrong_pixel_is_framed() {
             .filter(|&&[r, g, b]| g > 200 && r < 60 && b < 60)
             .count()
     };
-    wait_for("a frame", || {
+    wait_for("a ring", || {
         (green(255 - 8, 499 - 202 - 8, 17) > 12).then_some(())
     });
     assert_eq!(green(255, 499 - 202, 1), 1);
     let shown = session.pixels().unwrap().part([0, 0], [500, 500]);
-    // The frame of 11 × 11 pixels, a pixel wide, and the pixel itself.
+    // The ring of 11 × 11 pixels, a pixel wide, and the pixel itself.
     assert_eq!(shown.count([0, 255, 0]), 40 + 1);
     session.screenshot("viewer-errors-fast.png");
 }

@@ -400,14 +400,14 @@ impl Session {
 
     /// Waits until a panel with text stands to the right of the picture's part of the window, `width`
     /// pixels wide, which shows all of the picture of N = `size`, `stage` and `alpha`, and keeps it to be
-    /// looked at. Only the frame around an inspected pixel, `framed` from the left and the top, may lie
+    /// looked at. Only the ring around an inspected pixel, `ringed` from the left and the top, may lie
     /// over the picture.
     #[track_caller]
     pub fn shows_beside_panel(
         &self,
         width: usize,
         (size, stage, alpha): (u32, Stage, f64),
-        framed: Option<[usize; 2]>,
+        ringed: Option<[usize; 2]>,
         name: &str,
     ) {
         let picture = traced(size, stage, alpha);
@@ -423,7 +423,7 @@ impl Session {
             let wrong = pairs.filter(|(place, (shown, expected))| {
                 let [x, y] = [place % width, place / width];
                 let far =
-                    framed.is_none_or(|[left, top]| x.abs_diff(left).max(y.abs_diff(top)) > 8);
+                    ringed.is_none_or(|[left, top]| x.abs_diff(left).max(y.abs_diff(top)) > 8);
                 far && shown != expected
             });
             let shows = expected.bytes.len() == part.bytes.len() && wrong.count() == 0;

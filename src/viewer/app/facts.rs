@@ -5,7 +5,7 @@ use crate::Stage;
 use crate::viewer::action::Action;
 use crate::viewer::comparison::WRONG;
 use crate::viewer::information::{information, name_pixel};
-use crate::viewer::sheet::{Facts, frame};
+use crate::viewer::sheet::{Facts, ring};
 use crate::viewer::window::Mark;
 
 impl App<'_> {
@@ -56,13 +56,13 @@ impl App<'_> {
         // A line, as wide as those of the characters.
         let line = (view.cell().x / 7).max(1) as i32;
         let rings = facts.rings.iter().flat_map(|&pixel| {
-            let bars = frame(view.square(pixel), 4 * line, line);
+            let bars = ring(view.square(pixel), 4 * line, line);
             bars.map(|bar| (bar, WRONG))
         });
         let inspected = self.sheet.inspected().into_iter().flat_map(|(pixel, _)| {
             let square = view.square(pixel);
-            let black = frame(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
-            let white = frame(square, line, line).map(|bar| (bar, [255; 3]));
+            let black = ring(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
+            let white = ring(square, line, line).map(|bar| (bar, [255; 3]));
             black.into_iter().chain(white)
         });
         rings.chain(inspected).collect()
