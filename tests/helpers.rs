@@ -1,22 +1,24 @@
 //! What several promises need.
 
+#[cfg(feature = "program")]
+mod program;
+
 #[path = "../src/random.rs"]
 mod random;
 
-use std::fmt::Display;
-use std::io::Write as _;
+use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::Mutex;
 use std::thread;
 
 use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
-use firsthit::report::HARD_SCENES;
-use firsthit::screen::{Offscreen, ScreenError, Through};
 use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
-use tempfile::TempDir;
 
+#[cfg(feature = "program")]
+pub(crate) use program::{
+    PROGRAM, failed, open, printed, program, skipped, succeeded, text, words,
+};
 pub(crate) use random::Random;
 
 /// A frame as a new tracer with one thread makes it.
@@ -76,11 +78,28 @@ pub(crate) fn exr_bits(path: &Path) -> Vec<u32> {
     bits
 }
 
-/// The scene of that name in `tests/scenes`.
+/// The folder of the scenes that are hard to trace.
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes");
+
+/// The names of the hard scenes, in the order of the alphabet.
+pub(crate) fn hard_scenes() -> Vec<String> {
+    let files = fs::read_dir(SCENES).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<_> = names
+        .map(|name| name.strip_suffix(".toml").unwrap().to_owned())
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+/// The text of the hard scene of that name.
+pub(crate) fn hard_scene_text(name: &str) -> String {
+    fs::read_to_string(format!("{SCENES}/{name}.toml")).unwrap()
+}
+
+/// The hard scene of that name.
 pub(crate) fn hard_scene(name: &str) -> Scene {
-    let mut scenes = HARD_SCENES.iter();
-    let (_, text) = scenes.find(|(found, _)| *found == name).unwrap();
-    Scene::from_toml(text).unwrap()
+    Scene::from_toml(&hard_scene_text(name)).unwrap()
 }
 
 /// What `work` makes of each item, on all cores, in the order in which it is done.
@@ -101,68 +120,4 @@ pub(crate) fn on_all_cores<T, R: Send>(
         }
     });
     done.into_inner().unwrap()
-}
-
-/// Says that a test leaves something out for want of a library, which CI must have: there it fails.
-#[expect(
-    clippy::explicit_write,
-    reason = "the test harness hides what `eprintln!` says in a test that passes"
-)]
-pub(crate) fn skipped(error: &dyn Display) {
-    assert!(std::env::var_os("CI").is_none(), "{error}");
-    writeln!(std::io::stderr(), "skipped: {error}").unwrap();
-}
-
-/// An offscreen for pictures of this size, or `None` where its library is not installed: never so in CI.
-pub(crate) fn open(through: Through, size: u32) -> Option<Offscreen> {
-    match Offscreen::open(through, size) {
-        Ok(offscreen) => Some(offscreen),
-        Err(error @ ScreenError::Missing { .. }) => {
-            skipped(&error);
-            None
-        }
-        Err(error) => panic!("{}: {error}", through.name()),
-    }
-}
-
-pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_firsthit");
-
-/// The words of `line` as arguments; an empty line has none.
-pub(crate) fn words(line: &str) -> impl Iterator<Item = &str> {
-    line.split(' ').filter(|_| !line.is_empty())
-}
-
-/// The program with the words of `line`, to be run in `folder`.
-pub(crate) fn program(folder: &TempDir, line: &str) -> Command {
-    let mut command = Command::new(PROGRAM);
-    command.current_dir(folder).args(words(line));
-    command
-}
-
-/// What the program prints; it must succeed and say nothing on standard error.
-pub(crate) fn printed(folder: &TempDir, line: &str) -> String {
-    succeeded(&program(folder, line).output().unwrap(), line)
-}
-
-/// What the program printed; it must have succeeded and said nothing on standard error.
-pub(crate) fn succeeded(output: &Output, what: &str) -> String {
-    assert_eq!(text(&output.stderr), "", "{what}");
-    assert_eq!(output.status.code(), Some(0), "{what}");
-    text(&output.stdout)
-}
-
-/// What the program said on standard error; it must have failed with this status, and in one line where that is not 2, which is for
-/// wrong usage.
-pub(crate) fn failed(output: &Output, status: i32, what: &str) -> String {
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(status), "{what}: {message}");
-    if status != 2 {
-        assert_eq!(message.lines().count(), 1, "{what}: {message}");
-        assert!(message.ends_with('\n'), "{what}: {message}");
-    }
-    message
-}
-
-pub(crate) fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
 }

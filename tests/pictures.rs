@@ -2,11 +2,10 @@
 //! threads, in debug and release, on every architecture.
 
 use firsthit::camera::{ROUND, frame_angle};
-use firsthit::report::HARD_SCENES;
 use firsthit::tracer::{Decision, Simd};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
-use crate::helpers::{Random, bits, hard_scene, trace, trace_with_decisions};
+use crate::helpers::{Random, bits, hard_scene, hard_scenes, trace, trace_with_decisions};
 
 const SIZE: u32 = 125;
 
@@ -119,7 +118,7 @@ fn with_simd(
 fn any_vector_instructions() {
     let levels = Simd::all();
     eprintln!("vector instructions here: {levels:?}");
-    let scenes = HARD_SCENES.iter().map(|(name, _)| hard_scene(name));
+    let scenes = hard_scenes().into_iter().map(|name| hard_scene(&name));
     for scene in scenes.chain([Scene::builtin()]) {
         for stage in [Stage::Shading, Stage::Reflection] {
             for alpha in [0.0, 0.9] {

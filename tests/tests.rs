@@ -11,19 +11,26 @@
     reason = "a test stops at the first surprise, and shows its tables"
 )]
 
+#[cfg(feature = "program")]
 mod command_line;
+#[cfg(feature = "program")]
 mod compare;
+#[cfg(feature = "program")]
 mod explain;
 mod helpers;
 mod image_files;
 mod listing;
+#[cfg(feature = "program")]
 mod offscreen;
 mod pictures;
 mod plain;
 mod properties;
+#[cfg(feature = "program")]
 mod readme;
+#[cfg(feature = "program")]
 mod report;
 mod scene_files;
+#[cfg(feature = "program")]
 mod screen;
 mod stability;
 mod stages;
