@@ -22,6 +22,9 @@ mod overlay;
 mod pixels;
 #[path = "viewer/program.rs"]
 mod program;
+#[path = "../src/random.rs"]
+#[expect(dead_code, reason = "other tests choose fractions, too")]
+mod random;
 #[path = "viewer/session.rs"]
 mod session;
 #[path = "viewer/soak.rs"]

@@ -12,8 +12,8 @@ const NOTCH: f64 = 40.0;
 /// What the pointer asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Gesture {
-    /// The picture follows the pointer.
-    Drag { by: IVec2 },
+    /// The picture follows the pointer, which was pressed at `from`.
+    Drag { from: IVec2, by: IVec2 },
     /// Notches of the wheel; away from the person is positive, and nearer to the picture.
     Wheel { steps: i32, at: IVec2 },
     /// It went to another place, and nothing was pressed.
@@ -51,11 +51,12 @@ impl Pointer {
             let distance = (place - press.start).abs().max_element();
             press.drags = distance >= CLICK;
             return press.drags.then(|| Gesture::Drag {
+                from: press.start,
                 by: place - press.start,
             });
         }
-        let by = place - last?;
-        (by != IVec2::ZERO).then_some(Gesture::Drag { by })
+        let (from, by) = (press.start, place - last?);
+        (by != IVec2::ZERO).then_some(Gesture::Drag { from, by })
     }
 
     /// It left the window. While a button is down, it is still told where it is.
@@ -108,16 +109,13 @@ mod tests {
         assert_eq!(pointer.moved(IVec2::new(10, 10)), Some(Gesture::Hover));
         assert_eq!(pointer.pressed(true), None);
         assert_eq!(pointer.moved(IVec2::new(13, 8)), None);
+        let from = IVec2::new(10, 10);
         let by = IVec2::new(5, 2);
-        assert_eq!(
-            pointer.moved(IVec2::new(15, 12)),
-            Some(Gesture::Drag { by })
-        );
+        let drag = pointer.moved(IVec2::new(15, 12));
+        assert_eq!(drag, Some(Gesture::Drag { from, by }));
         let by = IVec2::new(-1, 0);
-        assert_eq!(
-            pointer.moved(IVec2::new(14, 12)),
-            Some(Gesture::Drag { by })
-        );
+        let drag = pointer.moved(IVec2::new(14, 12));
+        assert_eq!(drag, Some(Gesture::Drag { from, by }));
         assert_eq!(pointer.pressed(false), None);
         let at = IVec2::new(50, 50);
         assert_eq!(pointer.moved(at), Some(Gesture::Hover));

@@ -1,5 +1,6 @@
 //! The window, its OpenGL context, and the screen in it.
 
+mod growth;
 mod opengl;
 
 use std::num::NonZeroU32;
@@ -26,11 +27,12 @@ use crate::screen::{Placement, Screen};
 
 use super::ViewerError;
 use super::canvas::Board;
-use super::layout::{Layout, with_panel};
+use super::layout::Layout;
 use super::overlay::Overlay;
 use super::panel;
 use super::rect::Rect;
 use super::zoom::Zoom;
+use growth::Growth;
 use opengl::{Failure, config, display, fitting, functions};
 
 /// The window and everything that draws in it.
@@ -49,18 +51,6 @@ pub(super) struct View {
     /// What the window was asked to become for the panel.
     growth: Growth,
 }
-
-/// A window that grows for its panel, and shrinks again.
-#[derive(Clone, Copy, Default)]
-struct Growth {
-    /// The sizes before and after it grew; `None` where it did not.
-    grown: Option<[UVec2; 2]>,
-    /// A new size is on its way, but nobody waits for it any longer than until then.
-    awaited: Option<Instant>,
-}
-
-/// How long a window that was asked for another size is not drawn: a window manager may refuse.
-const PATIENCE: Duration = Duration::from_millis(100);
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
 struct Drawing {
@@ -172,11 +162,7 @@ impl View {
     /// The window has a new size, in pixels.
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
-        let awaited = self.growth.awaited.take();
-        if let (Some([_, after]), Some(_), true) = (&mut self.growth.grown, awaited, self.panel) {
-            // As far as the window manager let it.
-            *after = surface;
-        }
+        self.growth.came(surface);
         self.change(|view| view.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
@@ -190,64 +176,6 @@ impl View {
         change(self);
         let after = self.layout().picture.size();
         self.zoom.resize(before, after);
-    }
-
-    /// Opens or closes the panel. A window that is neither maximised nor fills the screen grows by what
-    /// the panel needs, and shrinks again unless it was given another size meanwhile.
-    pub(super) fn show_panel(&mut self, open: bool) {
-        if self.panel == open {
-            return;
-        }
-        let extent = self.zoom_to_fit().extent;
-        self.change(|view| view.panel = open);
-        let fixed = self.window.fullscreen().is_some() || self.window.is_maximized();
-        let grown = self.growth.grown.take();
-        let size = if open {
-            let most = self.window.current_monitor().map(|monitor| monitor.size());
-            let most = most.map_or(UVec2::MAX, |size| UVec2::new(size.width, size.height));
-            let size = with_panel(self.surface, extent, panel::wanted(self.cell()));
-            size.min(most).max(self.surface)
-        } else {
-            match grown {
-                Some([before, after]) if after == self.surface => before,
-                _ => self.surface,
-            }
-        };
-        if fixed || self.is_empty() || size == self.surface {
-            return;
-        }
-        if open {
-            self.growth.grown = Some([self.surface, size]);
-            self.make_room(size.x - self.surface.x);
-        }
-        self.growth.awaited = Some(Instant::now() + PATIENCE);
-        let asked = PhysicalSize::new(size.x, size.y);
-        if let Some(size) = self.window.request_inner_size(asked) {
-            self.resize(size);
-        }
-    }
-
-    /// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by
-    /// `growth`, where the desktop says where it is.
-    fn make_room(&self, growth: u32) {
-        let (Ok(place), Some(monitor)) =
-            (self.window.outer_position(), self.window.current_monitor())
-        else {
-            return;
-        };
-        let right = place.x + (self.window.outer_size().width + growth) as i32;
-        let beyond = right - (monitor.position().x + monitor.size().width as i32);
-        let left = (place.x - beyond.max(0)).max(monitor.position().x);
-        if left < place.x {
-            let place = PhysicalPosition::new(left, place.y);
-            self.window.set_outer_position(place);
-        }
-    }
-
-    /// Until when a new size of the window is waited for, if it is.
-    pub(super) fn awaits_size(&mut self, now: Instant) -> Option<Instant> {
-        self.growth.awaited.take_if(|until| *until <= now);
-        self.growth.awaited
     }
 
     /// The window and its parts.

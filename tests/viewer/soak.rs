@@ -3,6 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::random::Random;
 use super::session::{DOWN, LEFT, RIGHT, RIGHT_BUTTON, Session, UP, WHEEL_DOWN, WHEEL_UP};
 
 /// How long the viewer is used at random, in seconds: so many as this variable says.
@@ -15,14 +16,8 @@ fn used_at_random_it_stays_well_and_its_memory_bounded() {
     };
     let seconds = std::env::var(SOAK).map_or(10, |seconds| seconds.parse().unwrap());
     let start = Instant::now();
-    // Always the same choices: Knuth's generator in 64 bits.
-    let mut state = 1_u64;
-    let mut random = |below: u64| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % below
-    };
+    let mut choices = Random::new();
+    let mut random = |count| choices.below(count);
     let keys = b"1234567 .,+-0ekimhz";
     let mut settled = None;
     while start.elapsed() < Duration::from_secs(seconds) {
@@ -33,7 +28,7 @@ fn used_at_random_it_stays_well_and_its_memory_bounded() {
             3 => session.click(RIGHT_BUTTON),
             4 => session.press(if random(2) == 0 { UP } else { DOWN }),
             5 => session.press(if random(2) == 0 { LEFT } else { RIGHT }),
-            _ => session.press(u32::from(keys[random(keys.len() as u64) as usize])),
+            _ => session.press(u32::from(keys[random(keys.len())])),
         }
         thread::sleep(Duration::from_millis(5));
         // By then everything has been open once.

@@ -170,7 +170,8 @@ impl App<'_> {
             return;
         };
         match gesture {
-            Gesture::Drag { by } => view.drag(by),
+            Gesture::Drag { from, .. } if view.is_over_panel(from) => return,
+            Gesture::Drag { by, .. } => view.drag(by),
             Gesture::Wheel { steps, at } if view.is_over_panel(at) => {
                 if !self.sheet.scroll(-SCROLLED * steps as isize) {
                     return;
