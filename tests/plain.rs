@@ -7,6 +7,7 @@
 
 mod number;
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use firsthit::tracer::{Decision, Seen};
@@ -139,7 +140,6 @@ impl Solid {
 /// A frame of the picture, ready to be evaluated pixel by pixel.
 pub(crate) struct Plain<'a> {
     scene: &'a Scene,
-    stage: Stage,
     size: u32,
     bits: usize,
     sin: Number,
@@ -149,15 +149,19 @@ pub(crate) struct Plain<'a> {
     light: Vector,
 }
 
+/// The line of sight through a pixel, which is the same in every stage.
+struct Sight {
+    column: u32,
+    row: u32,
+    eye: Vector,
+    looking: Vector,
+    /// Where it is in each solid, once a stage has asked.
+    inside: Vec<OnceCell<Option<Inside>>>,
+}
+
 impl<'a> Plain<'a> {
     /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are apart where something is.
-    pub(crate) fn new(
-        scene: &'a Scene,
-        stage: Stage,
-        alpha: f64,
-        size: u32,
-        bits: usize,
-    ) -> Plain<'a> {
+    pub(crate) fn new(scene: &'a Scene, alpha: f64, size: u32, bits: usize) -> Plain<'a> {
         let number = |value: f64| Number::exact(value, bits);
         let vector = |v: DVec3| v.to_array().map(number);
         let (sin, cos) = number(alpha).sin_cos();
@@ -190,7 +194,6 @@ impl<'a> Plain<'a> {
         let light = vector(-scene.light().direction);
         Plain {
             scene,
-            stage,
             size,
             bits,
             sin,
@@ -208,15 +211,53 @@ impl<'a> Plain<'a> {
         v.to_array().map(|x| self.number(x))
     }
 
-    pub(crate) fn pixel(&self, column: u32, row: u32) -> (Decision, [f32; 3]) {
-        let (decision, color) = self.evaluate(column, row);
-        (decision, color.each_ref().map(Number::to_sample))
+    /// What a pixel shows in a stage.
+    pub(crate) fn pixel(&self, stage: Stage, column: u32, row: u32) -> (Decision, [f32; 3]) {
+        self.pixel_in_stages([stage], column, row)[0]
     }
 
-    fn evaluate(&self, column: u32, row: u32) -> (Decision, Vector) {
+    /// What it shows in each of some stages.
+    pub(crate) fn pixel_in_stages<const COUNT: usize>(
+        &self,
+        stages: [Stage; COUNT],
+        column: u32,
+        row: u32,
+    ) -> [(Decision, [f32; 3]); COUNT] {
+        let sight = self.sight(column, row);
+        stages.map(|stage| {
+            let (decision, color) = self.evaluate(stage, &sight);
+            (decision, color.each_ref().map(Number::to_sample))
+        })
+    }
+
+    fn sight(&self, column: u32, row: u32) -> Sight {
         let n = f64::from(self.size);
-        if self.stage == Stage::Image {
-            let (x, y, middle) = (f64::from(column), f64::from(row), n / 2.0);
+        let u = self.number(3.0 * (2.0 * f64::from(column) - n));
+        let v = self.number(3.0 * (2.0 * f64::from(row) - n));
+        let near = self.number(3.0 * n);
+        let eye = [
+            &(&near * &self.sin) + &(&u * &self.cos),
+            v,
+            &(&near * &self.cos) - &(&u * &self.sin),
+        ];
+        let looking = [
+            &self.number(-10.0) * &self.sin,
+            self.number(-3.0),
+            &self.number(-10.0) * &self.cos,
+        ];
+        Sight {
+            column,
+            row,
+            eye,
+            looking,
+            inside: self.solids.iter().map(|_| OnceCell::new()).collect(),
+        }
+    }
+
+    fn evaluate(&self, stage: Stage, sight: &Sight) -> (Decision, Vector) {
+        let n = f64::from(self.size);
+        if stage == Stage::Image {
+            let (x, y, middle) = (f64::from(sight.column), f64::from(sight.row), n / 2.0);
             let (quadrant, color) = match () {
                 () if x <= middle && y <= middle => (0, [0.3, 0.3, 0.0]),
                 () if x <= middle && y >= middle => (1, [0.0, 0.3, 0.3]),
@@ -225,33 +266,21 @@ impl<'a> Plain<'a> {
             };
             return (Decision::Quadrant(quadrant), color.map(|x| self.number(x)));
         }
-        let u = self.number(3.0 * (2.0 * f64::from(column) - n));
-        let v = self.number(3.0 * (2.0 * f64::from(row) - n));
-        let near = self.number(3.0 * n);
-        let eye = [
-            &(&near * &self.sin) + &(&u * &self.cos),
-            v.clone(),
-            &(&near * &self.cos) - &(&u * &self.sin),
-        ];
-        let looking = [
-            &self.number(-10.0) * &self.sin,
-            self.number(-3.0),
-            &self.number(-10.0) * &self.cos,
-        ];
+        let Sight { eye, looking, .. } = sight;
 
-        let takes_part = |solid: &Solid| match self.stage {
+        let takes_part = |solid: &Solid| match stage {
             Stage::Spheres => matches!(solid.shape, Shape::Sphere { .. }),
             Stage::Tetrahedron => matches!(solid.shape, Shape::Tetrahedron { .. }),
             _ => true,
         };
-        let mut first: Option<(usize, Inside)> = None;
+        let mut first: Option<(usize, &Inside)> = None;
         for (index, solid) in self
             .solids
             .iter()
             .enumerate()
             .filter(|(_, solid)| takes_part(solid))
         {
-            if let Some(inside) = solid.meet(&eye, &looking)
+            if let Some(inside) = sight.inside[index].get_or_init(|| solid.meet(eye, looking))
                 && first
                     .as_ref()
                     .is_none_or(|(_, other)| inside.near.less(&other.near))
@@ -260,25 +289,25 @@ impl<'a> Plain<'a> {
             }
         }
 
-        if self.stage >= Stage::Shadow
+        if stage >= Stage::Shadow
             && let Some(surface) = self.scene.surface()
         {
             // 3 t = v − height, both a multiple of 3.
-            let middle = self.number(2.0 * f64::from(row) - n);
+            let middle = self.number(2.0 * f64::from(sight.row) - n);
             let t = &middle - &(&self.number(n) * &self.number(surface.height));
-            let point = add(&eye, &scale(&looking, &t));
+            let point = add(eye, &scale(looking, &t));
             let visible = first
                 .as_ref()
                 .is_none_or(|(_, inside)| t.less(&inside.near));
             if visible && self.on_square(&point, &self.number(1.0)) {
-                return self.surface_at(&point, &looking);
+                return self.surface_at(stage, &point, looking);
             }
         }
         match first {
             None => (Decision::Background, self.vector(self.scene.background())),
             Some((index, inside)) => {
-                let point = add(&eye, &scale(&looking, &inside.near));
-                let (in_shadow, color) = self.shade(index, &inside, &point, &looking);
+                let point = add(eye, &scale(looking, &inside.near));
+                let (in_shadow, color) = self.shade(stage, (index, inside), &point, looking);
                 (
                     Decision::Solid(Seen {
                         solid: index as u16,
@@ -291,14 +320,14 @@ impl<'a> Plain<'a> {
         }
     }
 
-    fn surface_at(&self, point: &Vector, looking: &Vector) -> (Decision, Vector) {
+    fn surface_at(&self, stage: Stage, point: &Vector, looking: &Vector) -> (Decision, Vector) {
         let Some(surface) = self.scene.surface() else {
             unreachable!("there is a surface")
         };
         if self.shadowed(point, None) {
             return (Decision::SurfaceInShadow, self.ambient());
         }
-        if self.stage >= Stage::Reflection {
+        if stage >= Stage::Reflection {
             let mirrored = [looking[0].clone(), -&looking[1], looking[2].clone()];
             let zero = self.number(0.0);
             let start = |inside: &Inside| {
@@ -321,7 +350,8 @@ impl<'a> Plain<'a> {
             }
             if let Some((index, inside)) = first {
                 let seen_point = add(point, &scale(&mirrored, &inside.near));
-                let (in_shadow, color) = self.shade(index, &inside, &seen_point, &mirrored);
+                let (in_shadow, color) =
+                    self.shade(stage, (index, &inside), &seen_point, &mirrored);
                 let seen = Seen {
                     solid: index as u16,
                     face: inside.face,
@@ -422,19 +452,19 @@ impl<'a> Plain<'a> {
     /// Whether a point of a solid is in shadow, and its colour.
     fn shade(
         &self,
-        index: usize,
-        inside: &Inside,
+        stage: Stage,
+        (index, inside): (usize, &Inside),
         point: &Vector,
         looking: &Vector,
     ) -> (bool, Vector) {
         let color = &self.solids[index].color;
-        if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
+        if matches!(stage, Stage::Spheres | Stage::Tetrahedron) {
             return (false, color.clone());
         }
         let normal = unit(&inside.normal);
         let l = unit(&self.light);
         let facing = dot(&inside.normal, &self.light).sign();
-        let in_shadow = self.stage >= Stage::Shadow
+        let in_shadow = stage >= Stage::Shadow
             && (facing.is_le()
                 || self.shadowed(point, Some(index))
                 || self.shaded_by_surface(point));

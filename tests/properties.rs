@@ -135,9 +135,9 @@ fn exact_is_reference_and_the_plain_evaluation() {
         let [exact, reference] = [Kernel::Exact, Kernel::Reference]
             .map(|kernel| Frame::new(kernel, &scene, stage, alpha, size));
         exact.is(|column, row| reference.at(column, row))?;
-        let plain = Plain::new(&scene, stage, alpha, size, 512);
+        let plain = Plain::new(&scene, alpha, size, 512);
         pixels.iter().try_for_each(|&(column, row)| {
-            let (decision, color) = plain.pixel(column, row);
+            let (decision, color) = plain.pixel(stage, column, row);
             let expected = (decision, color.map(f32::to_bits));
             let at = || format!("by the plain evaluation at ({column}, {row})");
             same(exact.at(column, row), expected, at)

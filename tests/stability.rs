@@ -81,12 +81,12 @@ fn sampled(decisions: &[Decision]) -> BTreeSet<u32> {
 /// The pixels of a frame that the plain evaluation sees otherwise.
 fn wrong_pixels<'a>(
     frame: &Frame,
-    plain: &Plain<'_>,
+    (plain, stage): (&Plain<'_>, Stage),
     pixels: impl Iterator<Item = &'a u32>,
 ) -> Vec<String> {
     let pixels = pixels.filter_map(|&index| {
         let (column, row) = (index % SIZE, index / SIZE);
-        let (decision, color) = plain.pixel(column, row);
+        let (decision, color) = plain.pixel(stage, column, row);
         let place = index as usize;
         let got = &frame.samples[3 * place..3 * place + 3];
         let same = frame.decisions[place] == decision && got == color.map(f32::to_bits);
@@ -121,12 +121,12 @@ fn check(row: &Row) -> Result<(), String> {
         return Err(format!("{name}: exact and reference differ: {apart:?}"));
     }
     let pixels = sampled(&exact.decisions);
-    let plain = |bits| Plain::new(&scene, stage, row.alpha, SIZE, bits);
-    let mut wrong = wrong_pixels(&exact, &plain(row.bits), pixels.iter());
+    let plain = |bits| Plain::new(&scene, row.alpha, SIZE, bits);
+    let mut wrong = wrong_pixels(&exact, (&plain(row.bits), stage), pixels.iter());
     // What the plain evaluation takes for zero, it still takes for zero in twice as many bits.
     wrong.extend(wrong_pixels(
         &exact,
-        &plain(2 * row.bits),
+        (&plain(2 * row.bits), stage),
         pixels.iter().step_by(16),
     ));
     if let Some(first) = wrong.first() {

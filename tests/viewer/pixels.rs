@@ -67,20 +67,32 @@ impl Pixels {
     }
 }
 
-/// Waits until what is shown, if it can be seen, is what is expected.
+/// Waits until what is shown, if it can be seen, is what is expected of its width and height.
 #[track_caller]
-pub fn wait_to_show(shown: impl Fn() -> Option<Pixels>, expected: impl Fn() -> Pixels) {
+pub fn wait_to_show(shown: impl Fn() -> Option<Pixels>, expected: impl Fn(usize, usize) -> Pixels) {
     let start = Instant::now();
+    let mut known: Option<Pixels> = None;
     loop {
-        let (expected, shown) = (expected(), shown());
-        if shown.as_ref() == Some(&expected) {
-            return;
+        let shown = shown();
+        if let Some(shown) = &shown {
+            let fits = |known: &Pixels| (known.width, known.height) == (shown.width, shown.height);
+            let expected = match known.take().filter(fits) {
+                Some(known) => known,
+                None => expected(shown.width, shown.height),
+            };
+            if *shown == expected {
+                return;
+            }
+            known = Some(expected);
         }
         if start.elapsed() > DEADLINE {
-            let kept = shown.map(|shown| keep(&shown, &expected));
+            let kept = shown
+                .zip(known)
+                .map(|(shown, expected)| keep(&shown, &expected));
             panic!("this is not what the window shows: {kept:?}");
         }
-        thread::sleep(Duration::from_millis(10));
+        // To read and compare a window is work.
+        thread::sleep(Duration::from_millis(30));
     }
 }
 
@@ -132,14 +144,20 @@ pub fn placed(
         let texel = (2 * pixel + 1) * size / (2 * extent);
         (pixel < extent).then_some(texel as u32)
     };
-    let byte = |x, y| {
-        let (column, row) = (texel(x, left)?, texel(height - 1 - y, bottom)?);
-        Some(picture.pixel(column, row)?.map(display_byte))
-    };
-    let bytes = (0..height).flat_map(|y| (0..width).map(move |x| byte(x, y).unwrap_or(BLUE)));
+    let columns: Vec<_> = (0..width).map(|x| texel(x, left)).collect();
+    let mut bytes = vec![BLUE; width * height];
+    for (y, pixels) in bytes.chunks_mut(width).enumerate() {
+        let Some(row) = texel(height - 1 - y, bottom) else {
+            continue;
+        };
+        for (pixel, column) in pixels.iter_mut().zip(&columns) {
+            let shown = column.and_then(|column| picture.pixel(column, row));
+            *pixel = shown.map_or(BLUE, |samples| samples.map(display_byte));
+        }
+    }
     Pixels {
         width,
         height,
-        bytes: bytes.collect(),
+        bytes,
     }
 }

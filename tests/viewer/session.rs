@@ -375,13 +375,7 @@ impl Session {
     /// Waits until the window shows what a window of its width and height should.
     #[track_caller]
     fn shows_pixels(&self, expected: impl Fn(usize, usize) -> Pixels) {
-        wait_to_show(
-            || self.pixels(),
-            || {
-                let (width, height) = self.size();
-                expected(width, height)
-            },
-        );
+        wait_to_show(|| self.pixels(), expected);
     }
 
     /// Waits until something lies over at least so many hundredths of the window, which shows the picture of N = `size`, `stage` and

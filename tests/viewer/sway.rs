@@ -150,7 +150,7 @@ impl Sway {
         let picture = traced(500, stage, 0.0);
         wait_to_show(
             || Some(portable_pixmap(&self.printed("grim", &["-t", "ppm", "-"]))),
-            || letterboxed(&picture, WIDTH, HEIGHT),
+            |_, _| letterboxed(&picture, WIDTH, HEIGHT),
         );
     }
 
