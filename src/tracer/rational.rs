@@ -12,7 +12,7 @@ mod ties;
 
 use std::cmp::Ordering;
 
-use dashu_ratio::RBig;
+use dashu_ratio::Relaxed;
 use glam::DVec3;
 
 use super::decision::{Decision, Seen};
@@ -20,18 +20,18 @@ use crate::scene::{Scene, Tetrahedron};
 use crate::stage::Stage;
 use surd::{Surd, sign};
 
-type Vector = [RBig; 3];
+type Vector = [Relaxed; 3];
 type Point = [Surd; 3];
 
 fn exact(v: DVec3) -> Vector {
-    v.to_array().map(|x| RBig::try_from(x).unwrap())
+    v.to_array().map(|x| Relaxed::try_from(x).unwrap())
 }
 
 fn minus(a: &Vector, b: &Vector) -> Vector {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
 }
 
-fn dot(a: &Vector, b: &Vector) -> RBig {
+fn dot(a: &Vector, b: &Vector) -> Relaxed {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
@@ -66,15 +66,15 @@ fn along(origin: &Vector, direction: &Vector, t: &Surd) -> Point {
 struct Turn(i32, i32, i32);
 
 impl Turn {
-    fn sin_cos(self) -> [RBig; 2] {
-        [self.0, self.1].map(|x| RBig::from(x) / RBig::from(self.2))
+    fn sin_cos(self) -> [Relaxed; 2] {
+        [self.0, self.1].map(|x| Relaxed::from(x) / Relaxed::from(self.2))
     }
 }
 
 /// The points x with normal · x ≤ offset.
 struct HalfSpace {
     normal: Vector,
-    offset: RBig,
+    offset: Relaxed,
 }
 
 impl HalfSpace {
@@ -114,7 +114,7 @@ impl Polyhedron {
         ];
         let half_space = |(normal, offset)| HalfSpace {
             normal: exact(normal),
-            offset: RBig::try_from(offset).unwrap(),
+            offset: Relaxed::try_from(offset).unwrap(),
         };
         Polyhedron(sides.map(half_space).into())
     }
@@ -124,8 +124,8 @@ impl Polyhedron {
     }
 
     /// Where a line that meets it enters it, and through which face; of several, the lowest.
-    fn entry(&self, origin: &Vector, direction: &Vector) -> Option<(usize, RBig)> {
-        let mut last: Option<(usize, RBig)> = None;
+    fn entry(&self, origin: &Vector, direction: &Vector) -> Option<(usize, Relaxed)> {
+        let mut last: Option<(usize, Relaxed)> = None;
         for (k, face) in self.0.iter().enumerate() {
             let speed = dot(direction, &face.normal);
             if sign(&speed).is_lt() {
@@ -141,7 +141,7 @@ impl Polyhedron {
     /// Whether any t > 0 fulfils f + g t ≤ 0 for every side: by Fourier and Motzkin's elimination of t, if and only if every
     /// inequality without t holds and no lower bound of t exceeds an upper one.
     fn is_ahead(&self, origin: &Point, direction: &Vector) -> bool {
-        let all: Vec<(Surd, RBig)> = self
+        let all: Vec<(Surd, Relaxed)> = self
             .0
             .iter()
             .map(|side| (side.outside(origin), dot(direction, &side.normal)))
@@ -165,7 +165,7 @@ impl Polyhedron {
 }
 
 enum Solid {
-    Sphere { center: Vector, radius: RBig },
+    Sphere { center: Vector, radius: Relaxed },
     Tetrahedron(Polyhedron),
 }
 
@@ -190,7 +190,7 @@ impl Solid {
                 if sign(&discriminant).is_lt() {
                     return None;
                 }
-                let t = Surd::new(-&b / &a, -(RBig::ONE / &a), discriminant);
+                let t = Surd::new(-&b / &a, -(Relaxed::ONE / &a), discriminant);
                 let point = along(origin, direction, &t);
                 Some(Entry {
                     t,
@@ -235,15 +235,15 @@ impl Solid {
 struct Definition {
     stage: Stage,
     size: u32,
-    sin: RBig,
-    cos: RBig,
+    sin: Relaxed,
+    cos: Relaxed,
     solids: Vec<Solid>,
     to_light: Vector,
     surface: Option<Surface>,
 }
 
 struct Surface {
-    height: RBig,
+    height: Relaxed,
     square: Polyhedron,
 }
 
@@ -252,7 +252,7 @@ impl Definition {
     fn new(scene: &Scene, stage: Stage, turn: Turn, size: u32) -> Definition {
         let spheres = scene.spheres().iter().map(|sphere| Solid::Sphere {
             center: exact(sphere.center),
-            radius: RBig::try_from(sphere.radius).unwrap(),
+            radius: Relaxed::try_from(sphere.radius).unwrap(),
         });
         let tetrahedra = scene.tetrahedra().iter();
         let tetrahedra = tetrahedra.map(|t| Solid::Tetrahedron(Polyhedron::tetrahedron(t)));
@@ -266,7 +266,7 @@ impl Definition {
             solids: spheres.chain(tetrahedra).collect(),
             to_light: exact(-scene.light().direction),
             surface: surface.map(|surface| Surface {
-                height: RBig::try_from(surface.height).unwrap(),
+                height: Relaxed::try_from(surface.height).unwrap(),
                 square: Polyhedron::square(surface.height, surface.half_width),
             }),
         }
@@ -282,14 +282,14 @@ impl Definition {
 
     /// e(u, v) for a pixel.
     fn eye(&self, column: u32, row: u32) -> Vector {
-        let n = RBig::from(self.size);
-        let [u, v] = [column, row].map(|x| (RBig::from(2 * x) - &n) / &n);
+        let n = Relaxed::from(self.size);
+        let [u, v] = [column, row].map(|x| (Relaxed::from(2 * x) - &n) / &n);
         [&self.sin + &u * &self.cos, v, &self.cos - &u * &self.sin]
     }
 
     /// −w.
     fn looking(&self) -> Vector {
-        let rise = RBig::from(3) / RBig::from(10);
+        let rise = Relaxed::from(3) / Relaxed::from(10);
         [-self.sin.clone(), -rise, -self.cos.clone()]
     }
 
@@ -336,7 +336,7 @@ impl Definition {
         let [x, y, z] = looking.clone();
         let mirrored = [x, -y, z];
         let from = |entry: &Entry| match entry.t.sign() {
-            Ordering::Less => Surd::from(RBig::ZERO),
+            Ordering::Less => Surd::from(Relaxed::ZERO),
             _ => entry.t.clone(),
         };
         let mut first: Option<(usize, Entry)> = None;

@@ -3,40 +3,40 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Sub};
 
-use dashu_ratio::RBig;
+use dashu_ratio::Relaxed;
 
-pub(super) fn sign(x: &RBig) -> Ordering {
-    x.cmp(&RBig::ZERO)
+pub(super) fn sign(x: &Relaxed) -> Ordering {
+    x.cmp(&Relaxed::ZERO)
 }
 
 /// p + q√c. Numbers that meet in a sum or a product have the same c, or no root.
 #[derive(Clone, Debug)]
 pub(super) struct Surd {
-    p: RBig,
-    q: RBig,
-    c: RBig,
+    p: Relaxed,
+    q: Relaxed,
+    c: Relaxed,
 }
 
-impl From<RBig> for Surd {
-    fn from(p: RBig) -> Surd {
-        Surd::new(p, RBig::ZERO, RBig::ZERO)
+impl From<Relaxed> for Surd {
+    fn from(p: Relaxed) -> Surd {
+        Surd::new(p, Relaxed::ZERO, Relaxed::ZERO)
     }
 }
 
 impl Surd {
-    pub(super) fn new(p: RBig, q: RBig, c: RBig) -> Surd {
+    pub(super) fn new(p: Relaxed, q: Relaxed, c: Relaxed) -> Surd {
         assert!(sign(&c).is_ge(), "√{c} is not real");
         Surd { p, q, c }
     }
 
     /// The radicand of what is computed from both.
-    fn radicand(&self, other: &Surd) -> RBig {
+    fn radicand(&self, other: &Surd) -> Relaxed {
         let (one, two) = (!self.q.is_zero(), !other.q.is_zero());
         assert!(!(one && two) || self.c == other.c, "two different roots");
         if one { self.c.clone() } else { other.c.clone() }
     }
 
-    pub(super) fn scaled(&self, factor: &RBig) -> Surd {
+    pub(super) fn scaled(&self, factor: &Relaxed) -> Surd {
         Surd {
             p: &self.p * factor,
             q: &self.q * factor,
@@ -75,7 +75,7 @@ impl Surd {
         signs_of_sum(sign(&p), roots, || {
             // p² against (x + y)² = x² + y² + 2xy.
             let rest = &p * &p - &x_squared - &y_squared;
-            let product = &self.q * &other.q * RBig::from(2);
+            let product = &self.q * &other.q * Relaxed::from(2);
             Surd::new(rest, product, &self.c * &other.c).sign()
         })
     }
@@ -115,8 +115,9 @@ impl Sub for &Surd {
 
 #[test]
 fn signs_are_those_of_the_real_numbers() {
-    let fraction = |a: i32, b: i32| RBig::from(a) / RBig::from(b);
-    let surd = |p: i32, q: i32, c: i32| Surd::new(RBig::from(p), RBig::from(q), RBig::from(c));
+    let fraction = |a: i32, b: i32| Relaxed::from(a) / Relaxed::from(b);
+    let surd =
+        |p: i32, q: i32, c: i32| Surd::new(Relaxed::from(p), Relaxed::from(q), Relaxed::from(c));
     // √2 lies between the convergents 1393/985 and 3363/2378.
     for (p, q, expected) in [
         (fraction(-1393, 985), 1, Ordering::Greater),
@@ -161,8 +162,8 @@ fn signs_are_those_of_the_real_numbers() {
         (146_264_369_941_972_i64, Ordering::Greater),
         (146_264_369_941_973, Ordering::Less),
     ] {
-        let p = RBig::from(3) + RBig::from(p) / RBig::from(1_000_000_000_000_000_i64);
-        let got = surd(0, 1, 2).compare(&Surd::new(p, RBig::from(-1), RBig::from(3)));
+        let p = Relaxed::from(3) + Relaxed::from(p) / Relaxed::from(1_000_000_000_000_000_i64);
+        let got = surd(0, 1, 2).compare(&Surd::new(p, Relaxed::from(-1), Relaxed::from(3)));
         assert_eq!(got, expected);
     }
 }

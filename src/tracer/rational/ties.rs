@@ -4,7 +4,7 @@
 //! coordinates are such lengths, or simple fractions of them, lies on a sample's eye ray: so the geometry is chosen first,
 //! and [`sample`] finds its pixel, or says that there is none.
 
-use dashu_ratio::RBig;
+use dashu_ratio::Relaxed;
 
 use super::super::decision::{Decision, Seen};
 use super::compare::{TURNS, compare, compare_whole};
@@ -52,7 +52,7 @@ fn times(factor: i32, a: Place) -> Place {
 }
 
 fn vector(place: Place) -> Vector {
-    place.map(|x| RBig::from(x) / RBig::from(128))
+    place.map(|x| Relaxed::from(x) / Relaxed::from(128))
 }
 
 /// In the mirror of a surface at this height.
@@ -62,9 +62,9 @@ fn mirrored(place: Place, height: i32) -> Place {
 
 /// Where the shadow of a point falls on a surface at this height.
 fn shadow(place: Place, to_light: Place, height: i32) -> Vector {
-    let t = RBig::from(place[1] - height) / RBig::from(to_light[1]);
-    let length = RBig::from(128);
-    [0, 1, 2].map(|i| (RBig::from(place[i]) - &t * RBig::from(to_light[i])) / &length)
+    let t = Relaxed::from(place[1] - height) / Relaxed::from(to_light[1]);
+    let length = Relaxed::from(128);
+    [0, 1, 2].map(|i| (Relaxed::from(place[i]) - &t * Relaxed::from(to_light[i])) / &length)
 }
 
 /// A length to the right, up and toward the eye, as a vector of the world.
@@ -96,9 +96,10 @@ fn size(turn: Turn) -> u32 {
 fn sample(turn: Turn, [x, y, z]: &Vector) -> Option<(u32, u32)> {
     let [sin, cos] = turn.sin_cos();
     let (u, near) = (x * &cos - z * &sin, x * &sin + z * &cos);
-    let v = y + RBig::from(3) / RBig::from(10) * (RBig::ONE - near);
+    let v = y + Relaxed::from(3) / Relaxed::from(10) * (Relaxed::ONE - near);
     let [column, row] = [u, v].map(|x| {
-        let place = (x + RBig::ONE) * RBig::from(size(turn) / 2);
+        let place = (x + Relaxed::ONE) * Relaxed::from(size(turn) / 2);
+        let place = place.canonicalize();
         assert!(place.is_int(), "{place} is between two samples");
         u32::try_from(place).ok().filter(|&x| x < size(turn))
     });
