@@ -13,7 +13,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub(crate) use bounded::Bounded;
 pub(crate) use double_double::DoubleDouble;
-pub(crate) use expression::Expression;
+pub(crate) use expression::{Expression, Session};
 pub use sine::sin_cos;
 
 /// A number cannot tell a sign or a rounding: what it knows of the truth allows more than one.

@@ -1,32 +1,35 @@
 //! Numbers that are never in doubt: an expression, evaluated to as many digits as its sign or its rounding needs.
 //!
 //! A number is a place in a thread's list of operations. Nothing is computed until a sign or a sample is asked for; then the
-//! operations below it are evaluated in intervals whose ends are rounded outward, with ever more bits. At [`MOST_BITS`] the
-//! convention of the picture ends it: a sign still open counts as 0, and a sample whose enclosure still holds a midpoint
+//! operations below it are evaluated in intervals whose ends are rounded outward, with ever more bits. With the last of [`BITS`]
+//! the convention of the picture ends it: a sign still open counts as 0, and a sample whose enclosure still holds a midpoint
 //! between two f32s counts as that midpoint.
 
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::convert::Infallible;
+use std::mem;
 use std::ops::{Add, Div, Mul, Neg, Sub};
-use std::rc::Rc;
+use std::sync::Arc;
 
 use dashu_float::FBig;
 use dashu_float::round::Round;
 use dashu_float::round::mode::{Down, HalfEven, Up};
 
-use super::{DoubleDouble, Real, round_sum};
+use super::{DoubleDouble, Doubt, Real, round_sum};
 
-/// The bits that an evaluation begins with: more than a double-double has, which has been tried before.
-const FEWEST_BITS: usize = 192;
-
-/// The bits at which an evaluation ends.
-const MOST_BITS: usize = 8192;
+/// The bits that an evaluation is tried with, one after the other. The first are more than a double-double has, which has been tried
+/// before; with the last it ends.
+const BITS: [usize; 7] = [192, 384, 768, 1536, 3072, 6144, 8192];
 
 /// A number on this thread's list, valid until its session ends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expression(usize);
+pub(crate) struct Expression {
+    place: usize,
+    /// The same number, which answers where it is in no doubt: mostly it is not a whole formula that is doubtful, but one of its parts.
+    near: DoubleDouble,
+}
 
 /// What a number is made of, each operand by its place in the list.
 #[derive(Clone, Copy)]
@@ -49,18 +52,20 @@ struct Interval {
 }
 
 /// `None` where nothing is known yet: after a division by an interval that holds 0.
-type Enclosure = Option<Rc<Interval>>;
+type Enclosure = Option<Arc<Interval>>;
 
+/// A list of operations, and what is known of them.
 #[derive(Default)]
-struct Session {
+pub(crate) struct Session {
     operations: Vec<Operation>,
-    /// What each was last evaluated to, and in how many bits.
-    evaluated: Vec<(usize, Enclosure)>,
-    /// Sines and cosines by the bits of their angle and of their precision, which outlive a session: they are dear.
+    /// What each was evaluated to with each of [`BITS`], if it was.
+    evaluated: Vec<[Option<Enclosure>; BITS.len()]>,
+    /// Sines and cosines by the bits of their angle and the number among [`BITS`]. They outlive the operations: they are dear.
     turns: HashMap<(u64, usize), [Enclosure; 2]>,
 }
 
 thread_local! {
+    /// The one that this thread's operations are added to.
     static SESSION: RefCell<Session> = RefCell::default();
 }
 
@@ -68,18 +73,50 @@ impl Expression {
     /// Runs `compute`, whose expressions must not leave it, and forgets them.
     pub(crate) fn session<T>(compute: impl FnOnce() -> T) -> T {
         let result = compute();
-        SESSION.with_borrow_mut(|session| {
-            session.operations.clear();
-            session.evaluated.clear();
-        });
+        SESSION.with_borrow_mut(|session| session.forget(0));
         result
     }
 
-    fn new(operation: Operation) -> Expression {
+    fn new(operation: Operation, near: DoubleDouble) -> Expression {
         SESSION.with_borrow_mut(|session| {
             session.operations.push(operation);
-            session.evaluated.push((0, None));
-            Expression(session.operations.len() - 1)
+            session.evaluated.push(Default::default());
+            let place = session.operations.len() - 1;
+            Expression { place, near }
+        })
+    }
+
+    /// Its sign, by evaluation alone.
+    pub(super) fn evaluated_sign(self) -> Ordering {
+        let sign = self.ask(|interval| {
+            let signs = (
+                interval.low.cmp(&FBig::ZERO),
+                interval.high.cmp(&FBig::ZERO),
+            );
+            (signs.0 == signs.1).then_some(signs.0)
+        });
+        sign.unwrap_or(Ordering::Equal)
+    }
+
+    /// Rounded to the nearest f32, ties to even, by evaluation alone; a zero is +0.
+    pub(super) fn evaluated_sample(self) -> f32 {
+        let ends = |interval: &Interval| {
+            (
+                round(interval.low.clone().with_rounding()),
+                round(interval.high.clone().with_rounding()),
+            )
+        };
+        let sample = self.ask(|interval| {
+            let (low, high) = ends(interval);
+            (low == high).then_some(low)
+        });
+        0.0 + sample.unwrap_or_else(|enclosure| match enclosure {
+            // The midpoint between two neighbours is an f64, and casting it breaks the tie to even.
+            Some(interval) => {
+                let (low, high) = ends(&interval);
+                ((f64::from(low) + f64::from(high)) / 2.0) as f32
+            }
+            None => 0.0,
         })
     }
 
@@ -101,76 +138,104 @@ impl Expression {
     /// Asks `answer` about enclosures of more and more bits until it has one.
     fn ask<T>(self, answer: impl Fn(&Interval) -> Option<T>) -> Result<T, Enclosure> {
         SESSION.with_borrow_mut(|session| {
-            let mut bits = FEWEST_BITS;
-            loop {
-                let enclosure = session.evaluate(self.0, bits);
+            let mut enclosure = None;
+            for level in 0..BITS.len() {
+                enclosure = session.evaluate(self.place, level);
                 if let Some(answer) = enclosure.as_deref().and_then(&answer) {
                     return Ok(answer);
                 }
-                if bits >= MOST_BITS {
-                    return Err(enclosure);
-                }
-                bits = (2 * bits).min(MOST_BITS);
             }
+            Err(enclosure)
         })
     }
 }
 
 impl Session {
-    fn evaluate(&mut self, place: usize, bits: usize) -> Enclosure {
-        let (known_bits, known) = &self.evaluated[place];
-        if *known_bits >= bits {
+    /// A session of its own, and what `compute` returns: its expressions are valid in [`Session::go_on`] only, on any thread.
+    pub(crate) fn begin<T>(compute: impl FnOnce() -> T) -> (Session, T) {
+        let mut session = Session::default();
+        let result = session.hold(compute);
+        (session, result)
+    }
+
+    /// Runs `compute`, whose own expressions must not leave it, and forgets them. What was found out about those that there were before
+    /// is remembered.
+    pub(crate) fn go_on<T>(&mut self, compute: impl FnOnce() -> T) -> T {
+        let kept = self.operations.len();
+        let result = self.hold(compute);
+        self.forget(kept);
+        result
+    }
+
+    /// Runs `compute` with this as the thread's session.
+    fn hold<T>(&mut self, compute: impl FnOnce() -> T) -> T {
+        SESSION.with_borrow_mut(|session| mem::swap(session, self));
+        let result = compute();
+        SESSION.with_borrow_mut(|session| mem::swap(session, self));
+        result
+    }
+
+    /// Forgets all operations but the first `kept`.
+    fn forget(&mut self, kept: usize) {
+        self.operations.truncate(kept);
+        self.evaluated.truncate(kept);
+    }
+
+    /// What is at `place`, with the bits that have this number.
+    fn evaluate(&mut self, place: usize, level: usize) -> Enclosure {
+        if let Some(known) = &self.evaluated[place][level] {
             return known.clone();
         }
+        let bits = BITS[level];
         let enclosure = match self.operations[place] {
-            Operation::Exact(value) => Some(Rc::new(Interval::exact(value, bits))),
-            Operation::Sine(alpha) => self.turn(alpha, bits)[0].clone(),
-            Operation::Cosine(alpha) => self.turn(alpha, bits)[1].clone(),
-            Operation::Sum(a, b) => self.both(a, b, bits, |a, b| Some(a.plus(b))),
-            Operation::Product(a, b) => self.both(a, b, bits, |a, b| Some(a.times(b))),
-            Operation::Quotient(a, b) => self.both(a, b, bits, Interval::over),
-            Operation::Negation(a) => self.one(a, bits, Interval::negated),
-            Operation::Root(a) => self.one(a, bits, Interval::root),
-            Operation::OneMinusToThe(a, exponent) => self.one(a, bits, |a| {
+            Operation::Exact(value) => Some(Arc::new(Interval::exact(value, bits))),
+            Operation::Sine(alpha) => self.turn(alpha, level)[0].clone(),
+            Operation::Cosine(alpha) => self.turn(alpha, level)[1].clone(),
+            Operation::Sum(a, b) => self.both(a, b, level, |a, b| Some(a.plus(b))),
+            Operation::Product(a, b) => self.both(a, b, level, |a, b| Some(a.times(b))),
+            Operation::Quotient(a, b) => self.both(a, b, level, Interval::over),
+            Operation::Negation(a) => self.one(a, level, Interval::negated),
+            Operation::Root(a) => self.one(a, level, Interval::root),
+            Operation::OneMinusToThe(a, exponent) => self.one(a, level, |a| {
                 Interval::exact(1.0, bits)
                     .plus(&a.negated())
                     .clipped_power(exponent)
             }),
         };
-        self.evaluated[place] = (bits, enclosure.clone());
+        self.evaluated[place][level] = Some(enclosure.clone());
         enclosure
     }
 
     fn one(
         &mut self,
         a: usize,
-        bits: usize,
+        level: usize,
         operation: impl Fn(&Interval) -> Interval,
     ) -> Enclosure {
-        self.evaluate(a, bits).map(|a| Rc::new(operation(&a)))
+        self.evaluate(a, level).map(|a| Arc::new(operation(&a)))
     }
 
     fn both(
         &mut self,
         a: usize,
         b: usize,
-        bits: usize,
+        level: usize,
         operation: impl Fn(&Interval, &Interval) -> Option<Interval>,
     ) -> Enclosure {
-        let (a, b) = (self.evaluate(a, bits)?, self.evaluate(b, bits)?);
-        operation(&a, &b).map(Rc::new)
+        let (a, b) = (self.evaluate(a, level)?, self.evaluate(b, level)?);
+        operation(&a, &b).map(Arc::new)
     }
 
-    fn turn(&mut self, alpha: f64, bits: usize) -> [Enclosure; 2] {
+    fn turn(&mut self, alpha: f64, level: usize) -> [Enclosure; 2] {
         // An animation brings new angles for ever.
         if self.turns.len() > 64 {
             self.turns.clear();
         }
         let turn = self
             .turns
-            .entry((alpha.to_bits(), bits))
+            .entry((alpha.to_bits(), level))
             .or_insert_with(|| {
-                let angle = Interval::exact(alpha, bits);
+                let angle = Interval::exact(alpha, BITS[level]);
                 let ((sin_low, cos_low), (sin_high, cos_high)) =
                     (angle.low.sin_cos(), angle.high.sin_cos());
                 let sine = Interval {
@@ -178,8 +243,8 @@ impl Session {
                     high: sin_high,
                 };
                 [
-                    Some(Rc::new(sine)),
-                    Some(Rc::new(Interval {
+                    Some(Arc::new(sine)),
+                    Some(Arc::new(Interval {
                         low: cos_low,
                         high: cos_high,
                     })),
@@ -216,43 +281,68 @@ impl Interval {
         }
     }
 
+    /// The extremes of a product lie at ends of both factors, and the factors' signs say at which.
     fn times(&self, other: &Interval) -> Interval {
-        // The extremes of a product lie at ends of both factors.
-        let (a, b) = (
-            [&self.low, &up_as_down(&self.high)],
-            [&other.low, &up_as_down(&other.high)],
-        );
-        let lows = a.iter().flat_map(|a| b.iter().map(move |b| *a * *b));
-        let (a, b) = (
-            [&down_as_up(&self.low), &self.high],
-            [&down_as_up(&other.low), &other.high],
-        );
-        let highs = a.iter().flat_map(|a| b.iter().map(move |b| *a * *b));
+        if self.is_negative() {
+            return self.negated().times(other).negated();
+        }
+        if self.is_positive() {
+            let (a, b) = (self, other);
+            return Interval {
+                low: if b.low >= FBig::<Down>::ZERO {
+                    &a.low * &b.low
+                } else {
+                    up_as_down(&a.high) * &b.low
+                },
+                high: if b.high >= FBig::<Up>::ZERO {
+                    &a.high * &b.high
+                } else {
+                    down_as_up(&a.low) * &b.high
+                },
+            };
+        }
+        if other.is_positive() || other.is_negative() {
+            return other.times(self);
+        }
+        let (a, b) = (self, other);
+        let lows = [&a.low * up_as_down(&b.high), up_as_down(&a.high) * &b.low];
+        let highs = [down_as_up(&a.low) * down_as_up(&b.low), &a.high * &b.high];
+        let ([low, other_low], [high, other_high]) = (lows, highs);
         Interval {
-            low: least(lows),
-            high: most(highs),
+            low: low.min(other_low),
+            high: high.max(other_high),
         }
     }
 
     /// `None` where the divisor may be 0.
     fn over(&self, other: &Interval) -> Option<Interval> {
-        if other.low <= FBig::<Down>::ZERO && other.high >= FBig::<Up>::ZERO {
+        if other.high < FBig::<Up>::ZERO {
+            return self.negated().over(&other.negated());
+        }
+        if other.low <= FBig::<Down>::ZERO {
             return None;
         }
-        let (a, b) = (
-            [&self.low, &up_as_down(&self.high)],
-            [&other.low, &up_as_down(&other.high)],
-        );
-        let lows = a.iter().flat_map(|a| b.iter().map(move |b| *a / *b));
-        let (a, b) = (
-            [&down_as_up(&self.low), &self.high],
-            [&down_as_up(&other.low), &other.high],
-        );
-        let highs = a.iter().flat_map(|a| b.iter().map(move |b| *a / *b));
+        let (a, b) = (self, other);
         Some(Interval {
-            low: least(lows),
-            high: most(highs),
+            low: if a.low >= FBig::<Down>::ZERO {
+                &a.low / up_as_down(&b.high)
+            } else {
+                &a.low / &b.low
+            },
+            high: if a.high >= FBig::<Up>::ZERO {
+                &a.high / down_as_up(&b.low)
+            } else {
+                &a.high / &b.high
+            },
         })
+    }
+
+    fn is_positive(&self) -> bool {
+        self.low >= FBig::<Down>::ZERO
+    }
+
+    fn is_negative(&self) -> bool {
+        self.high <= FBig::<Up>::ZERO && !self.is_positive()
     }
 
     /// The root of a number that is not negative, whatever its enclosure says.
@@ -304,16 +394,6 @@ fn down_as_up(x: &FBig<Down>) -> FBig<Up> {
     x.clone().with_rounding()
 }
 
-fn least(ends: impl Iterator<Item = FBig<Down>>) -> FBig<Down> {
-    ends.reduce(|a, b| if b < a { b } else { a })
-        .unwrap_or(FBig::ZERO)
-}
-
-fn most(ends: impl Iterator<Item = FBig<Up>>) -> FBig<Up> {
-    ends.reduce(|a, b| if b > a { b } else { a })
-        .unwrap_or(FBig::ZERO)
-}
-
 /// The nearest f32, ties to even.
 fn round(x: FBig<HalfEven>) -> f32 {
     // Not by FBig::to_f32, which does not round to the nearest among subnormal f32s. The f64s here are normal, or too small to
@@ -326,7 +406,8 @@ fn round(x: FBig<HalfEven>) -> f32 {
 impl Add for Expression {
     type Output = Expression;
     fn add(self, other: Expression) -> Expression {
-        Expression::new(Operation::Sum(self.0, other.0))
+        let sum = Operation::Sum(self.place, other.place);
+        Expression::new(sum, self.near + other.near)
     }
 }
 
@@ -340,21 +421,23 @@ impl Sub for Expression {
 impl Neg for Expression {
     type Output = Expression;
     fn neg(self) -> Expression {
-        Expression::new(Operation::Negation(self.0))
+        Expression::new(Operation::Negation(self.place), -self.near)
     }
 }
 
 impl Mul for Expression {
     type Output = Expression;
     fn mul(self, other: Expression) -> Expression {
-        Expression::new(Operation::Product(self.0, other.0))
+        let product = Operation::Product(self.place, other.place);
+        Expression::new(product, self.near * other.near)
     }
 }
 
 impl Div for Expression {
     type Output = Expression;
     fn div(self, other: Expression) -> Expression {
-        Expression::new(Operation::Quotient(self.0, other.0))
+        let quotient = Operation::Quotient(self.place, other.place);
+        Expression::new(quotient, self.near / other.near)
     }
 }
 
@@ -362,55 +445,36 @@ impl Real for Expression {
     type Doubt = Infallible;
 
     fn exact(value: f64) -> Expression {
-        Expression::new(Operation::Exact(value))
+        Expression::new(Operation::Exact(value), DoubleDouble::exact(value))
     }
 
     fn sin_cos(alpha: f64) -> (Expression, Expression) {
+        let (sin, cos) = DoubleDouble::sin_cos(alpha);
         (
-            Expression::new(Operation::Sine(alpha)),
-            Expression::new(Operation::Cosine(alpha)),
+            Expression::new(Operation::Sine(alpha), sin),
+            Expression::new(Operation::Cosine(alpha), cos),
         )
     }
 
     fn sqrt(self) -> Expression {
-        Expression::new(Operation::Root(self.0))
+        Expression::new(Operation::Root(self.place), self.near.sqrt())
     }
 
     fn one_minus_to_the(self, exponent: u32) -> Expression {
-        Expression::new(Operation::OneMinusToThe(self.0, exponent))
+        let power = Operation::OneMinusToThe(self.place, exponent);
+        Expression::new(power, self.near.one_minus_to_the(exponent))
     }
 
     fn sign(self) -> Result<Ordering, Infallible> {
-        let sign = self.ask(|interval| {
-            let signs = (
-                interval.low.cmp(&FBig::ZERO),
-                interval.high.cmp(&FBig::ZERO),
-            );
-            (signs.0 == signs.1).then_some(signs.0)
-        });
-        Ok(sign.unwrap_or(Ordering::Equal))
+        Ok(self
+            .near
+            .sign()
+            .unwrap_or_else(|Doubt| self.evaluated_sign()))
     }
 
     fn to_sample(self) -> Result<f32, Infallible> {
-        let ends = |interval: &Interval| {
-            (
-                round(interval.low.clone().with_rounding()),
-                round(interval.high.clone().with_rounding()),
-            )
-        };
-        let sample = self.ask(|interval| {
-            let (low, high) = ends(interval);
-            (low == high).then_some(low)
-        });
-        Ok(0.0
-            + sample.unwrap_or_else(|enclosure| match enclosure {
-                // The midpoint between two neighbours is an f64, and casting it breaks the tie to even.
-                Some(interval) => {
-                    let (low, high) = ends(&interval);
-                    ((f64::from(low) + f64::from(high)) / 2.0) as f32
-                }
-                None => 0.0,
-            }))
+        let sample = self.near.to_sample();
+        Ok(sample.unwrap_or_else(|Doubt| self.evaluated_sample()))
     }
 
     fn to_f64(self) -> f64 {

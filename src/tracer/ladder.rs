@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 use std::convert::Infallible;
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use bumpalo::Bump;
 use bumpalo_herd::Herd;
@@ -15,7 +15,7 @@ use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::vector::Vector;
 use super::view::{Frame, FrameBearings};
-use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real};
+use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real, Session};
 use crate::scene::Scene;
 use crate::stage::Stage;
 
@@ -167,7 +167,15 @@ pub(super) struct Ladder<'f> {
     /// Made when it is first needed, in `late`.
     double_double: OnceLock<Picture<'f, DoubleDouble>>,
     late: &'f Herd,
+    /// Made when all are in use.
+    desks: Mutex<Vec<Desk<'f>>>,
     colors: Palette<'f>,
+}
+
+/// The frame in arbitrary precision, for one thread at a time: what is found out about it for one pixel is known for the next.
+struct Desk<'f> {
+    session: Session,
+    picture: Picture<'f, Expression>,
 }
 
 impl<'f> Ladder<'f> {
@@ -192,6 +200,7 @@ impl<'f> Ladder<'f> {
             basis,
             double_double: OnceLock::new(),
             late,
+            desks: Mutex::default(),
             colors: Palette::new(scene, arena),
         }
     }
@@ -216,11 +225,18 @@ impl<'f> Ladder<'f> {
         if let Ok(answer) = question.put_to(double_double) {
             return (answer, Rung::DoubleDouble);
         }
-        Expression::session(|| {
-            let arena = Bump::new();
-            let Ok(answer) = question.put_to(&self.picture::<Expression>(&&arena));
-            (answer, Rung::Arbitrary)
-        })
+        let mut desk = self.desks().pop().unwrap_or_else(|| {
+            let (session, picture) = Session::begin(|| self.picture(&self.late.get()));
+            Desk { session, picture }
+        });
+        let Ok(answer) = desk.session.go_on(|| question.put_to(&desk.picture));
+        self.desks().push(desk);
+        (answer, Rung::Arbitrary)
+    }
+
+    fn desks(&self) -> MutexGuard<'_, Vec<Desk<'f>>> {
+        // Nothing happens under the lock that could fail halfway.
+        self.desks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The frame in any number.
