@@ -7,6 +7,7 @@ mod explain;
 mod passage;
 mod report;
 mod view;
+mod waiting;
 
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -5,13 +5,17 @@ mod exr;
 mod load;
 pub(crate) mod png;
 mod save;
+mod unfinished;
 pub(crate) mod whole_file;
 
 use std::fmt;
 
+use crate::memory;
+
 pub use animation::Animation;
 pub use load::LoadError;
 pub use save::{Format, SaveError};
+pub use unfinished::abandon_unfinished;
 
 /// The largest number of pixels along a side.
 pub const MAX_SIZE: u32 = 16384;
@@ -55,9 +59,7 @@ impl Image {
         }
         let length = size as usize * size as usize * 3;
         let mut samples = Vec::new();
-        samples
-            .try_reserve_exact(length)
-            .map_err(|_| ImageError::Memory(size))?;
+        memory::reserve(&mut samples, length).map_err(|_| ImageError::Memory(size))?;
         samples.resize(length, 0.0);
         Ok(Image {
             size,

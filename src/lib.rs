@@ -71,7 +71,10 @@
 
 pub mod camera;
 pub mod difference;
+#[cfg(feature = "screen")]
+pub mod fault;
 pub mod image;
+pub mod memory;
 mod number;
 #[cfg(test)]
 mod random;

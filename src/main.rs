@@ -1,13 +1,19 @@
 //! The command line, nothing else.
 
 mod command;
+mod ending;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use command::Failure;
+use ending::Memory;
+
+#[global_allocator]
+static MEMORY: Memory = Memory;
 
 fn main() -> ExitCode {
+    ending::prepare();
     match command::run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(answer)) => {

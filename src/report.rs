@@ -122,7 +122,7 @@ pub struct Report {
     pub fills: Vec<String>,
     /// Each kernel on each scene in each stage.
     pub rows: Vec<Row>,
-    /// What it costs to display a frame.
+    /// What it costs to display a frame, once that is measured.
     pub pipelines: Vec<Pipeline>,
 }
 
@@ -166,7 +166,10 @@ fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// Measures all that is requested, and tells `progress` before each step.
+/// Measures the kernels as requested, and tells `progress` before each step.
+///
+/// What it costs to display a frame is measured by [`Report::measure_pipelines`], afterwards: OpenGL drivers are not ours, and one that
+/// ends the process takes nothing along that was not shown before.
 ///
 /// # Errors
 /// [`ReportError`] where there is no room for the pictures, or no threads.
@@ -257,7 +260,6 @@ impl Work<'_> {
                 }
             }
         }
-        let pipelines = pipeline::measure(self.request, self.threads, &mut self.image)?;
         Ok(Report {
             machine: Machine::this(),
             size: self.request.size,
@@ -265,7 +267,7 @@ impl Work<'_> {
             threads: self.threads,
             fills: fillers.iter().map(|(_, filler)| filler.how()).collect(),
             rows,
-            pipelines,
+            pipelines: Vec::new(),
         })
     }
 
@@ -366,6 +368,21 @@ pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
 }
 
 impl Report {
+    /// Measures what it costs to display a frame. `watch` is called with `true` before a driver does something for the first time, and
+    /// with `false` after it: a driver may never come back.
+    ///
+    /// # Errors
+    /// As [`measure`]; where no driver can be had, that is told in [`Report::pipelines`].
+    pub fn measure_pipelines(
+        &mut self,
+        request: &Request,
+        watch: &mut dyn FnMut(bool),
+    ) -> Result<(), ReportError> {
+        let mut image = Image::new(self.size)?;
+        self.pipelines = pipeline::measure(request, self.threads, &mut image, watch)?;
+        Ok(())
+    }
+
     /// How many frames a round has.
     pub fn frame_count(&self) -> u64 {
         (self.frames.end() - self.frames.start()).saturating_add(1)

@@ -8,6 +8,8 @@
 //! `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
 //! all their bits, those of signalling NaNs too.
 
+#[cfg(feature = "program")]
+mod check;
 #[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
@@ -17,18 +19,24 @@ mod offscreen;
 mod osmesa;
 mod placement;
 mod program;
+pub(crate) mod room;
 mod timed;
 
 use std::ops::Range;
 use std::rc::Rc;
 
+use bytemuck::cast_slice;
 use glam::{I64Vec2, UVec2};
 use glow::HasContext as _;
 
 use crate::image::{Image, ImageError, MAX_SIZE};
+#[cfg(feature = "program")]
+pub use check::Differs;
 pub use error::ScreenError;
 #[cfg(feature = "program")]
 pub(crate) use layer::Layer;
+#[cfg(feature = "program")]
+pub(crate) use offscreen::functions;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;
@@ -51,8 +59,8 @@ const FRAGMENT_CAPABILITIES: [u32; 8] = [
 
 /// The retained texture and the quad that shows it.
 ///
-/// Every method, and the drop, needs the context of [`Screen::new`] to be current on this thread. Each sets all state it relies on and
-/// restores none.
+/// Every method, and the drop, needs the context of [`Screen::new`] to be current on this thread: that is what its caller promises. Each
+/// sets all state it relies on and restores none.
 pub struct Screen {
     gl: Rc<glow::Context>,
     program: Program,
@@ -70,11 +78,15 @@ impl Screen {
     /// # Errors
     /// [`ScreenError::Image`] where there is no picture of that size, [`ScreenError::TextureTooLarge`] and [`ScreenError::Memory`] where
     /// it is beyond the driver, [`ScreenError::Refused`] where the driver refuses the shaders or the texture.
-    pub fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
+    ///
+    /// # Safety
+    /// `gl` holds the functions of the context that is current on this thread. The same context is current again whenever a method of the
+    /// screen is called, and when the screen is dropped.
+    pub unsafe fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
         if !(1..=MAX_SIZE).contains(&size) {
             return Err(ImageError::Size(size).into());
         }
-        // SAFETY: whoever made `gl` has promised that its functions are loaded from a context; an `Rc` has not left that context's thread.
+        // SAFETY: the context is current, as the caller has promised.
         let max = unsafe { gl.get_parameter_i32(glow::MAX_TEXTURE_SIZE) }.unsigned_abs();
         if size > max {
             return Err(ScreenError::TextureTooLarge { size, max });
@@ -165,7 +177,7 @@ impl Screen {
                 rows.len() as i32,
                 glow::RGB,
                 glow::FLOAT,
-                glow::PixelUnpackData::Slice(Some(as_bytes(samples))),
+                glow::PixelUnpackData::Slice(Some(cast_slice(samples))),
             );
         }
         check(gl, "to take the picture as a texture", self.size)
@@ -268,10 +280,4 @@ fn check(gl: &glow::Context, what: &'static str, size: u32) -> Result<(), Screen
             &format!("OpenGL error {code:#06x}"),
         )),
     }
-}
-
-/// The bytes of `samples`, as glow wants them.
-fn as_bytes(samples: &[f32]) -> &[u8] {
-    // SAFETY: the same memory for the same time; every byte of a float is initialised and a byte has no alignment.
-    unsafe { std::slice::from_raw_parts(samples.as_ptr().cast(), size_of_val(samples)) }
 }

@@ -37,6 +37,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::image::SaveError;
+use crate::screen::Differs;
 use crate::{Kernel, Scene, Stage};
 
 pub use action::key_table;
@@ -65,12 +66,21 @@ pub struct Options {
 /// Something that a person at the terminal may want to know, as a line of text, or some, by [`fmt::Display`].
 #[derive(Debug)]
 pub enum Event {
+    /// There is a window with an OpenGL context: whatever might have kept it is behind us.
+    Opened,
     /// The first frame is on its way to the display.
     FirstFrame {
         /// Since [`run`] was called.
         after: Duration,
         /// The name that OpenGL gives what drew it.
         renderer: String,
+    },
+    /// The window does not show what was drawn: the driver is wrong, and other pixels may be, too.
+    Differs {
+        /// The name that OpenGL gives what drew it.
+        renderer: String,
+        /// The first such pixel.
+        differs: Differs,
     },
     /// The shown picture is in a new file.
     Saved(PathBuf),
@@ -92,6 +102,20 @@ impl fmt::Display for Event {
                     after.as_millis()
                 )
             }
+            Event::Opened => f.write_str("opened a window"),
+            Event::Differs {
+                renderer,
+                differs:
+                    Differs {
+                        pixel,
+                        drawn,
+                        shown,
+                    },
+            } => write!(
+                f,
+                "{renderer} does not show what was drawn: at column {}, row {} from the bottom {shown:?} instead of {drawn:?}: try another driver",
+                pixel.x, pixel.y
+            ),
             Event::Saved(path) => write!(f, "saved {}", path.display()),
             Event::NotSaved(error) => write!(f, "not saved: {error}"),
             Event::Inspected(text) => f.write_str(text.trim_end()),

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
@@ -15,18 +15,8 @@ use firsthit::{Image, Kernel, Scene, Stage, scene};
 use tempfile::TempDir;
 
 use crate::helpers::{
-    self, PROGRAM, bits, exr_bits, open, printed, program, succeeded, text, trace, words,
+    self, bits, exr_bits, open, printed, program, program_after, succeeded, text, trace,
 };
-
-/// The program under `sh`, after `setup`.
-fn program_after(setup: &str, folder: &TempDir, line: &str) -> Command {
-    let mut command = Command::new("sh");
-    command
-        .args(["-c", &format!("{setup}; exec \"$0\" \"$@\""), PROGRAM])
-        .args(words(line))
-        .current_dir(folder);
-    command
-}
 
 /// Runs the program in `folder` with the words of `line`; it must succeed and say nothing.
 fn done(folder: &TempDir, line: &str) {
@@ -332,34 +322,6 @@ fn an_output_that_cannot_be_written_is_status_1_and_one_line() {
     failed(&program(&folder, &line).output().unwrap(), &line);
     let line = format!("{options} missing/a.apng --frames 0..9");
     failed(&program(&folder, &line).output().unwrap(), &line);
-}
-
-#[cfg(unix)]
-#[test]
-fn where_the_disk_refuses_nothing_is_left() {
-    for (name, frames) in [
-        ("a.png", ""),
-        ("a.exr", ""),
-        ("{}.exr", " --frames 3..4"),
-        ("a.apng", " --frames 3..4"),
-    ] {
-        let folder = folder();
-        let old = name.replace("{}", "3");
-        fs::write(folder.path().join(&old), "old").unwrap();
-        // Files may grow to 4 KiB; beyond, a write fails as it does on a full disk.
-        let line = format!("capture --stage 6 --size 500 --through none -o {name}{frames}");
-        let output = program_after("trap '' XFSZ; ulimit -f 8", &folder, &line)
-            .output()
-            .unwrap();
-        let message = failed(&output, name);
-        assert!(
-            message.contains(&format!("{old}: cannot be written: File too large")),
-            "{message}"
-        );
-        assert!(message.contains("make room"), "{message}");
-        assert_eq!(names(&folder), [&*old]);
-        assert_eq!(bytes(&folder, &old), b"old");
-    }
 }
 
 #[cfg(unix)]

@@ -1,5 +1,7 @@
 //! What several promises need.
 
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod fault;
 #[cfg(feature = "program")]
 mod program;
 
@@ -15,6 +17,12 @@ use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
 use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use fault::with_fault;
+#[cfg(all(feature = "program", unix))]
+pub(crate) use program::program_after;
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use program::ways;
 #[cfg(feature = "program")]
 pub(crate) use program::{
     PROGRAM, failed, open, printed, program, skipped, succeeded, text, words,

@@ -122,6 +122,12 @@ impl Gl {
 }
 
 /// What an 8-bit framebuffer makes of a sample.
+/// A screen in the context of the [`Gl`] whose functions these are.
+fn screen(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
+    // SAFETY: these tests keep that context current as long as they have a screen in it.
+    unsafe { Screen::new(gl, size) }
+}
+
 fn byte(sample: f32) -> u8 {
     (sample.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
 }
@@ -166,7 +172,7 @@ fn assert_drawn(gl: &Gl, screen: &Screen, size: u32, surface: UVec2, placement: 
 fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
     let Some(gl) = Gl::open() else { return };
     for size in [1, 2, 7, 10, 64] {
-        let mut screen = Screen::new(gl.gl.clone(), size).unwrap();
+        let mut screen = screen(gl.gl.clone(), size).unwrap();
         screen.upload(&coordinates(size)).unwrap();
         // Whole multiples with and without a margin, and smaller ones, among them those where every centre lies between two texels.
         for side in 1..=3 * size + 2 {
@@ -196,7 +202,7 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
 fn texels_are_exact_where_floats_no_longer_are() {
     let Some(gl) = Gl::open() else { return };
     let (size, extent) = (255, 8_400_000);
-    let mut screen = Screen::new(gl.gl.clone(), size).unwrap();
+    let mut screen = screen(gl.gl.clone(), size).unwrap();
     screen.upload(&coordinates(size)).unwrap();
     // Around the first pixel of each texel: a 32-bit float cannot tell it from its neighbours.
     for texel in 1..size {
@@ -229,7 +235,7 @@ fn eight_bits_are_the_nearest_byte_ties_to_even() {
     image.samples_mut()[..samples.len()].copy_from_slice(&samples);
     let surface = UVec2::splat(size);
     gl.bind_framebuffer(glow::RGBA8, surface);
-    let mut screen = Screen::new(gl.gl.clone(), size).unwrap();
+    let mut screen = screen(gl.gl.clone(), size).unwrap();
     screen.upload(&image).unwrap();
     screen.draw(surface, Placement::fit(surface, size));
     let drawn = gl.read_bytes(surface);
@@ -340,7 +346,7 @@ fn what_another_painter_leaves_behind_does_no_harm() {
             gl.bind_framebuffer(format, surface);
             // A disturbance before the screen is made, between upload and draw, and between two draws.
             disturb(&gl.gl, what);
-            let mut screen = Screen::new(gl.gl.clone(), size).unwrap();
+            let mut screen = screen(gl.gl.clone(), size).unwrap();
             disturb(&gl.gl, what);
             screen.upload(&image).unwrap();
             for _ in 0..2 {
@@ -362,7 +368,7 @@ fn an_offscreen_that_ends_takes_nothing_of_another_context_along() {
     let Some(gl) = Gl::open() else { return };
     let offscreen = Offscreen::open(Through::Egl, 5).unwrap();
     gl.context.make_current_surfaceless().unwrap();
-    let mut screen = Screen::new(gl.gl.clone(), 5).unwrap();
+    let mut screen = screen(gl.gl.clone(), 5).unwrap();
     screen.upload(&coordinates(5)).unwrap();
     drop(offscreen);
     gl.context.make_current_surfaceless().unwrap();
@@ -373,7 +379,7 @@ fn an_offscreen_that_ends_takes_nothing_of_another_context_along() {
 #[test]
 fn a_picture_of_another_size_is_refused_and_the_old_one_stays() {
     let Some(gl) = Gl::open() else { return };
-    let mut screen = Screen::new(gl.gl.clone(), 5).unwrap();
+    let mut screen = screen(gl.gl.clone(), 5).unwrap();
     screen.upload(&coordinates(5)).unwrap();
     for size in [4, 6] {
         match screen.upload(&coordinates(size)) {
@@ -389,7 +395,7 @@ fn a_picture_of_another_size_is_refused_and_the_old_one_stays() {
 fn a_size_that_no_picture_has_is_refused() {
     let Some(gl) = Gl::open() else { return };
     for size in [0, 16_385, u32::MAX] {
-        let error = Screen::new(gl.gl.clone(), size).err().unwrap();
+        let error = screen(gl.gl.clone(), size).err().unwrap();
         assert!(matches!(error, ScreenError::Image(_)), "{error}");
     }
 }
@@ -414,8 +420,8 @@ fn a_small_drivers_largest_texture_is_respected() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    assert!(Screen::new(gl.gl.clone(), 64).is_ok());
-    let error = Screen::new(gl.gl.clone(), 65).err().unwrap();
+    assert!(screen(gl.gl.clone(), 64).is_ok());
+    let error = screen(gl.gl.clone(), 65).err().unwrap();
     assert!(
         matches!(error, ScreenError::TextureTooLarge { size: 65, max: 64 }),
         "{error}"
@@ -434,7 +440,7 @@ fn a_driver_without_memory_is_reported() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    let error = Screen::new(gl.gl.clone(), 64).err().unwrap();
+    let error = screen(gl.gl.clone(), 64).err().unwrap();
     assert!(matches!(error, ScreenError::Memory { size: 64 }), "{error}");
 }
 
@@ -470,7 +476,7 @@ fn a_driver_that_does_not_understand_the_shaders_is_quoted_in_one_line() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    let error = Screen::new(gl.gl.clone(), 64).err().unwrap().to_string();
+    let error = screen(gl.gl.clone(), 64).err().unwrap().to_string();
     let quoted = "the vertex shader (0:1(1): error: what? 0:2(1): error: what now?)";
     assert!(error.contains(quoted), "{error}");
 }

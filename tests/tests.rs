@@ -13,12 +13,18 @@
 
 #[cfg(feature = "program")]
 mod command_line;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod commit;
 #[cfg(feature = "program")]
 mod compare;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod drivers;
 #[cfg(feature = "program")]
 mod explain;
 mod helpers;
 mod image_files;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod limits;
 mod listing;
 #[cfg(feature = "program")]
 mod offscreen;
@@ -34,3 +40,5 @@ mod scene_files;
 mod screen;
 mod stability;
 mod stages;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod whole_files;

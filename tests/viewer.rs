@@ -14,6 +14,8 @@
 
 #[path = "viewer/displays.rs"]
 mod displays;
+#[path = "helpers/fault.rs"]
+mod fault;
 #[path = "viewer/keys.rs"]
 mod keys;
 #[path = "viewer/overlay.rs"]

@@ -1,6 +1,5 @@
 //! `firsthit capture`: pictures into files, without a window.
 
-use std::borrow::Cow;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -124,11 +123,12 @@ impl Capture {
         Ok(())
     }
 
-    fn passed(&mut self) -> Result<Cow<'_, Image>, Failure> {
-        Ok(self.passage.pass(&self.image)?)
+    fn passed(&mut self) -> Result<&Image, Failure> {
+        self.passage.pass(&self.image)?;
+        Ok(&self.image)
     }
 
-    fn picture(&mut self, alpha: f64) -> Result<Cow<'_, Image>, Failure> {
+    fn picture(&mut self, alpha: f64) -> Result<&Image, Failure> {
         self.trace(alpha)?;
         self.passed()
     }
@@ -161,13 +161,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Job::Animation { frames, path } => {
             let mut animation = Animation::create(path, size, count(&frames))?;
             for frame in with_progress(frames) {
-                animation.push(&*capture.picture(frame_angle(frame))?)?;
+                animation.push(capture.picture(frame_angle(frame))?)?;
             }
             animation.finish()?;
         }
     }
     // Said last: where the capture fails, one line says why, and no other.
-    if let Some(note) = capture.passage.note {
+    if let Some(note) = capture.passage.note() {
         crate::say(&note);
     }
     Ok(())

@@ -1,13 +1,14 @@
 //! `firsthit compare`: two pictures, sample by sample.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use firsthit::Image;
 use firsthit::difference::{Difference, save_heat};
-use firsthit::image::Format;
+use firsthit::image::{Format, LoadError};
 
+use super::waiting::Waiting;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
@@ -31,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("{}: a false-colour picture is a .png", path.display());
         return Err(wrong::<Arguments>("firsthit compare", message).into());
     }
-    let (a, b) = (Image::load(&arguments.a)?, Image::load(&arguments.b)?);
+    let (a, b) = (load(&arguments.a)?, load(&arguments.b)?);
     let sizes = |reason| Failure::Sizes {
         a: arguments.a.clone(),
         b: arguments.b.clone(),
@@ -98,4 +99,9 @@ fn text(arguments: &Arguments, size: u32, difference: &Difference) -> String {
         }
     }
     text
+}
+
+fn load(path: &Path) -> Result<Image, LoadError> {
+    let _waiting = Waiting::for_input(path);
+    Image::load(path)
 }

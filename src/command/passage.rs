@@ -1,10 +1,10 @@
 //! What traced pictures pass through before they are written.
 
-use std::borrow::Cow;
-
 use clap::ValueEnum;
 use firsthit::Image;
 use firsthit::screen::{Offscreen, ScreenError, Through};
+
+use super::waiting::Waiting;
 
 /// The values of `--through`.
 #[derive(Clone, Copy, ValueEnum)]
@@ -17,62 +17,111 @@ pub(crate) enum Way {
     None,
 }
 
-/// The way that was taken, open for pictures of one size.
+/// The way that is taken, open for pictures of one size.
 pub(crate) struct Passage {
-    screen: Option<Offscreen>,
-    /// Which way was taken and why, unless it was asked for.
-    pub(crate) note: Option<String>,
+    screen: Option<(Through, Offscreen)>,
+    /// The ways to go on with where this one fails; none if it was asked for.
+    others: Vec<Through>,
+    /// Why those before it were not taken; `None` if it was asked for.
+    reasons: Option<String>,
+    size: u32,
 }
 
 impl Passage {
     /// The way that is asked for, else EGL, else OSMesa, else none.
     pub(crate) fn open(way: Option<Way>, size: u32) -> Result<Passage, ScreenError> {
-        let through = match way {
-            Some(Way::Egl) => Through::Egl,
-            Some(Way::Osmesa) => Through::OsMesa,
-            Some(Way::None) => {
-                return Ok(Passage {
-                    screen: None,
-                    note: None,
-                });
-            }
-            None => return Ok(Passage::first_of([Through::Egl, Through::OsMesa], size)),
+        let mut passage = Passage {
+            screen: None,
+            others: Vec::new(),
+            reasons: None,
+            size,
         };
-        Ok(Passage {
-            screen: Some(Offscreen::open(through, size)?),
-            note: None,
+        match way {
+            Some(Way::Egl) => passage.enter(Through::Egl)?,
+            Some(Way::Osmesa) => passage.enter(Through::OsMesa)?,
+            Some(Way::None) => {}
+            None => {
+                passage.others = vec![Through::OsMesa, Through::Egl];
+                passage.reasons = Some(String::new());
+                passage.enter_next();
+            }
+        }
+        Ok(passage)
+    }
+
+    fn enter(&mut self, through: Through) -> Result<(), ScreenError> {
+        let _waiting = Waiting::for_driver(self.size);
+        self.screen = Some((through, Offscreen::open(through, self.size)?));
+        Ok(())
+    }
+
+    /// Takes the next way that is open, or none.
+    fn enter_next(&mut self) {
+        while let Some(through) = self.others.pop() {
+            match self.enter(through) {
+                Ok(()) => return,
+                Err(error) => self.leave(through, &error),
+            }
+        }
+    }
+
+    /// Notes why a way is not taken.
+    fn leave(&mut self, through: Through, error: &ScreenError) {
+        let name = through.name();
+        let reasons = self.reasons.get_or_insert_default();
+        reasons.push_str(&format!("; not through {name}: {error}"));
+    }
+
+    /// Sends a picture through. At the other end it is the same, bit for bit, or there is an error; where the way was not asked for, the
+    /// next one is taken then.
+    pub(crate) fn pass(&mut self, image: &Image) -> Result<(), ScreenError> {
+        while let Some((through, screen)) = &mut self.screen {
+            let waiting = Waiting::for_driver(self.size);
+            let passed = screen.show(image).and_then(|back| compare(image, &back));
+            drop(waiting);
+            match passed {
+                Ok(()) => break,
+                Err(error) if self.reasons.is_none() => return Err(error),
+                Err(error) => {
+                    let through = *through;
+                    self.screen = None;
+                    self.leave(through, &error);
+                    self.enter_next();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Which way was taken and why, unless it was asked for.
+    pub(crate) fn note(&self) -> Option<String> {
+        let reasons = self.reasons.as_ref()?;
+        Some(match &self.screen {
+            Some((through, _)) => {
+                let name = through.name();
+                format!("captured through {name}, the first that works here{reasons}")
+            }
+            None => {
+                format!("captured through none, since nothing else works here{reasons}")
+            }
         })
     }
+}
 
-    fn first_of(ways: [Through; 2], size: u32) -> Passage {
-        let mut reasons = String::new();
-        for through in ways {
-            let name = through.name();
-            match Offscreen::open(through, size) {
-                Ok(screen) => {
-                    return Passage {
-                        screen: Some(screen),
-                        note: Some(format!(
-                            "captured through {name}, the first that works here{reasons}"
-                        )),
-                    };
-                }
-                Err(error) => reasons.push_str(&format!("; not through {name}: {error}")),
-            }
-        }
-        Passage {
-            screen: None,
-            note: Some(format!(
-                "captured through none, since nothing else works here{reasons}"
-            )),
-        }
-    }
-
-    /// The picture at the other end: the same, bit for bit.
-    pub(crate) fn pass<'a>(&mut self, image: &'a Image) -> Result<Cow<'a, Image>, ScreenError> {
-        match &mut self.screen {
-            Some(screen) => screen.show(image).map(Cow::Owned),
-            None => Ok(Cow::Borrowed(image)),
-        }
-    }
+/// By the contract of [`Offscreen::show`] both are the same; a driver may break it.
+fn compare(drawn: &Image, back: &Image) -> Result<(), ScreenError> {
+    let same = |(a, b): (&f32, &f32)| a.to_bits() == b.to_bits();
+    let samples = drawn.samples().iter().zip(back.samples());
+    let Some(sample) = samples.clone().position(|pair| !same(pair)) else {
+        return Ok(());
+    };
+    let pixel = (sample / 3) as u32;
+    let (column, row) = (pixel % drawn.size(), pixel / drawn.size());
+    let [drawn, back] = [drawn, back].map(|image| image.pixel(column, row).unwrap_or_default());
+    Err(ScreenError::Altered {
+        column,
+        row,
+        drawn,
+        back,
+    })
 }

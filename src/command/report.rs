@@ -2,15 +2,16 @@
 
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 use firsthit::image::MAX_SIZE;
-use firsthit::report::{self, Group, NamedScene, Progress, Request};
+use firsthit::report::{self, Group, NamedScene, Progress, Report, Request};
 use firsthit::{Kernel, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{frames, kernel, read_scene, stage};
+use super::waiting::Waiting;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
@@ -73,14 +74,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         bar.set_message(next.to_owned());
     });
     bar.finish_and_clear();
-    let report = report?;
-    if let Some(path) = &arguments.json {
-        report::save(&report.json(), path)?;
-    }
-    if let Some(path) = &arguments.plot {
-        report::save(&report.plot()?, path)?;
-    }
-    print(&report.table())
+    let mut report = report?;
+    let save = |report: &Report| match &arguments.json {
+        Some(path) => report::save(&report.json(), path),
+        None => Ok(()),
+    };
+    // What cannot be shown in one place is still shown in the others.
+    let shown = print(&report.table());
+    let plotted = match &arguments.plot {
+        Some(path) => plot(&report, path),
+        None => Ok(()),
+    };
+    let saved = save(&report);
+    let mut waiting = None;
+    report.measure_pipelines(&request, &mut |waits| {
+        waiting = waits.then(|| Waiting::for_driver(request.size));
+    })?;
+    shown?;
+    let all_shown = print(&report.pipeline_table());
+    plotted?;
+    saved?;
+    save(&report)?;
+    all_shown
+}
+
+fn plot(report: &Report, path: &Path) -> Result<(), Failure> {
+    Ok(report::save(&report.plot()?, path)?)
 }
 
 fn request(arguments: &Arguments) -> Result<Request, Failure> {

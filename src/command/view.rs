@@ -6,6 +6,7 @@ use firsthit::Stage;
 use firsthit::viewer::{self, Event, Options, Pace};
 
 use super::arguments::{PictureArguments, finite, stage};
+use super::waiting::Waiting;
 use super::{Failure, print};
 
 #[derive(Args)]
@@ -50,8 +51,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         pace,
         exit_after_frames: arguments.exit_after_frames,
     };
+    let mut opening = Some(Waiting::for_driver(options.size));
     viewer::run(options, &mut |event| match event {
-        Event::NotSaved(_) => crate::say(&event.to_string()),
+        Event::Opened => opening = None,
+        Event::NotSaved(_) | Event::Differs { .. } => crate::say(&event.to_string()),
         // A person who closed the terminal still has the window.
         Event::FirstFrame { .. } => drop(print(&format!("{}{event}\n", viewer::key_table()))),
         _ => drop(print(&format!("{event}\n"))),

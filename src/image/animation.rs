@@ -7,6 +7,7 @@ use ::png::{EncodingError, Writer};
 
 use super::whole_file::{Output, WholeFile};
 use super::{Image, SaveError, display_byte, png};
+use crate::memory;
 
 /// A frame stays for 1/5 s.
 const DELAY: (u16, u16) = (1, 5);
@@ -64,7 +65,7 @@ impl Animation {
     /// The encoder takes an animation's frames whole, not row by row as a single picture.
     fn write(&mut self, image: &Image) -> io::Result<()> {
         self.bytes.clear();
-        self.bytes.try_reserve_exact(image.samples().len())?;
+        memory::reserve(&mut self.bytes, image.samples().len())?;
         for row in image.rows_from_top() {
             self.bytes.extend(row.iter().copied().map(display_byte));
         }

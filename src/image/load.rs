@@ -11,6 +11,7 @@ use ::exr::math::Vec2;
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
 use super::{Format, Image, ImageError};
+use crate::memory;
 
 /// A file that no picture can be read from. Each message is one line.
 #[derive(Debug, thiserror::Error)]
@@ -167,7 +168,7 @@ fn read_png(file: BufReader<File>) -> Result<Image, Problem> {
     let too_large = || Problem::Image(ImageError::Memory(width));
     let mut bytes = Vec::new();
     let length = reader.output_buffer_size().ok_or_else(too_large)?;
-    bytes.try_reserve_exact(length).map_err(|_| too_large())?;
+    memory::reserve(&mut bytes, length).map_err(|_| too_large())?;
     bytes.resize(length, 0);
     let info = reader.next_frame(&mut bytes)?;
     // The checksum of the last chunk, and that there is a last one.

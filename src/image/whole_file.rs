@@ -1,22 +1,23 @@
 //! A file that appears whole or not at all.
 //!
-//! The bytes go to a temporary name in the same folder, which is renamed at the end: whoever looks at the final name finds the old file or the new one,
-//! never a part. The temporary file is removed on every error; only a process that is killed leaves it behind, as `.firsthit-` and some letters.
+//! The bytes go to an [`Unfinished`] file in the same folder, which gets its name at the end, when the disk has it: whoever looks at the name
+//! finds the old file or the new one, never a part.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use tempfile::TempPath;
-
 use super::SaveError;
+use super::unfinished::Unfinished;
 
 /// The name of a file that is still being written through its [`Output`].
 pub(crate) struct WholeFile {
     path: PathBuf,
     target: PathBuf,
-    temporary: TempPath,
+    unfinished: Unfinished,
+    /// The same as the output's.
+    file: File,
     failure: Failure,
 }
 
@@ -44,29 +45,26 @@ impl WholeFile {
                 return Err(SaveError::ReadOnly(path.to_owned()));
             }
         }
-        let folder = target.parent().unwrap_or(Path::new(""));
-        let (file, temporary) = tempfile::Builder::new()
-            .prefix(".firsthit-")
-            .make_in(folder, |name| {
-                OpenOptions::new().write(true).create_new(true).open(name)
-            })
-            .map_err(|reason| SaveError::write(path, reason))?
-            .into_parts();
+        let folder = folder(&target);
+        let create = || {
+            let (unfinished, file) = Unfinished::create(folder)?;
+            Ok((unfinished, file.try_clone()?, file))
+        };
+        let (unfinished, output, file) =
+            create().map_err(|reason| SaveError::write(path, reason))?;
         let failure = Failure::default();
         let output = Output {
-            file: BufWriter::new(file),
+            file: BufWriter::new(output),
             failure: Arc::clone(&failure),
         };
-        let path = path.to_owned();
-        Ok((
-            WholeFile {
-                path,
-                target,
-                temporary,
-                failure,
-            },
-            output,
-        ))
+        let whole = WholeFile {
+            path: path.to_owned(),
+            target,
+            unfinished,
+            file,
+            failure,
+        };
+        Ok((whole, output))
     }
 
     /// The whole of a file: what `write` writes.
@@ -87,9 +85,18 @@ impl WholeFile {
         if let Some(failure) = self.failure.get() {
             return Err(SaveError::write(&self.path, copy(failure)));
         }
-        self.temporary
-            .persist(&self.target)
-            .map_err(|failure| SaveError::write(&self.path, failure.error))
+        let persist = || {
+            on_disk(self.file.sync_all())?;
+            let folder = folder(&self.target);
+            self.unfinished.persist(self.file, folder, &self.target)?;
+            // Else the name might not outlive the power.
+            #[cfg(unix)]
+            if let Ok(folder) = File::open(folder) {
+                on_disk(folder.sync_all())?;
+            }
+            Ok(())
+        };
+        persist().map_err(|reason| SaveError::write(&self.path, reason))
     }
 
     /// Why the file cannot be written: the first write that failed, else the encoder's own `error`.
@@ -129,6 +136,30 @@ impl Seek for Output {
     }
 }
 
+/// The folder of a file.
+fn folder(file: &Path) -> &Path {
+    // A path of one word names none.
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// What came of waiting for the disk: where there is none to wait for, it is well.
+fn on_disk(waited: io::Result<()>) -> io::Result<()> {
+    match waited {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported
+            ) =>
+        {
+            Ok(())
+        }
+        waited => waited,
+    }
+}
+
 fn copy(error: &io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(code) => io::Error::from_raw_os_error(code),
@@ -147,7 +178,8 @@ mod tests {
         let path = folder.path().join("a");
         let (file, mut output) = WholeFile::create(&path).unwrap();
         // Open for reading only: every write fails.
-        output.file = BufWriter::with_capacity(0, File::open(&file.temporary).unwrap());
+        let read_only = File::open(std::env::current_exe().unwrap()).unwrap();
+        output.file = BufWriter::with_capacity(0, read_only);
         let reason = output.write(b"lost").unwrap_err();
         drop(output);
         let error = file.finish(Ok(())).unwrap_err();

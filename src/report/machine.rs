@@ -1,7 +1,5 @@
 //! What the measuring was done on, and with.
 
-use std::path::Path;
-use std::process::Command;
 use std::{env, fs};
 
 use serde::Serialize;
@@ -21,8 +19,8 @@ pub struct Machine {
     pub cores: usize,
     /// The version of the program.
     pub version: &'static str,
-    /// The commit that it was built from, "-dirty" behind it where something was changed since: the environment variable
-    /// `FIRSTHIT_COMMIT` of the build, else the commit that its source folder is at now; `None` where neither can be had.
+    /// The commit that it was built from: the environment variable `FIRSTHIT_COMMIT` of the build, else the one that the sources of the
+    /// build were at; `None` where neither was known, and in a debug build. Changes to the sources that were not committed are not seen.
     pub commit: Option<String>,
     /// Whether it was built without optimisation: then its times mean little.
     pub debug_build: bool,
@@ -38,9 +36,7 @@ impl Machine {
             os: env::consts::OS,
             cores: super::cores(),
             version: env!("CARGO_PKG_VERSION"),
-            commit: option_env!("FIRSTHIT_COMMIT")
-                .map(str::to_owned)
-                .or_else(commit),
+            commit: option_env!("FIRSTHIT_COMMIT").map(str::to_owned),
             debug_build: cfg!(debug_assertions),
         }
     }
@@ -81,26 +77,4 @@ fn features() -> Vec<&'static str> {
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 fn features() -> Vec<&'static str> {
     Vec::new()
-}
-
-fn commit() -> Option<String> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR"));
-    // Unpacked from an archive, the source may lie in a repository that is another's.
-    if !source.join(".git").exists() {
-        return None;
-    }
-    let output = Command::new("git")
-        .arg("-C")
-        .arg(source)
-        .args([
-            "describe",
-            "--always",
-            "--dirty",
-            "--abbrev=12",
-            "--exclude=*",
-        ])
-        .output()
-        .ok()?;
-    let commit = String::from_utf8(output.stdout).ok()?.trim().to_owned();
-    (output.status.success() && !commit.is_empty()).then_some(commit)
 }

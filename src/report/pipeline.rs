@@ -49,6 +49,7 @@ pub(super) fn measure(
     request: &Request,
     threads: usize,
     image: &mut Image,
+    watch: &mut dyn FnMut(bool),
 ) -> Result<Vec<Pipeline>, ReportError> {
     let (Some(named), Some(&stage), Some(&kernel)) = (
         request.scenes.first(),
@@ -66,13 +67,17 @@ pub(super) fn measure(
         stage,
         image,
     };
-    let mut ways: Vec<_> = [Through::Egl, Through::OsMesa]
-        .into_iter()
-        .flat_map(|through| Path::ALL.map(|path| Way::open(through, path, request.size)))
-        .collect();
+    let mut ways = Vec::new();
+    for through in [Through::Egl, Through::OsMesa] {
+        for path in Path::ALL {
+            watch(true);
+            ways.push(Way::open(through, path, request.size));
+            watch(false);
+        }
+    }
     for _ in 0..ROUNDS {
         for way in &mut ways {
-            way.round(&mut frames)?;
+            way.round(&mut frames, watch)?;
         }
     }
     Ok(ways.into_iter().map(|way| way.pipeline(kernel)).collect())
@@ -121,7 +126,11 @@ impl Way {
     }
 
     /// Shows a round of frames.
-    fn round(&mut self, frames: &mut Frames<'_>) -> Result<(), TraceError> {
+    fn round(
+        &mut self,
+        frames: &mut Frames<'_>,
+        watch: &mut dyn FnMut(bool),
+    ) -> Result<(), TraceError> {
         let Ok(screen) = &mut self.screen else {
             return Ok(());
         };
@@ -132,7 +141,14 @@ impl Way {
             let (time, changed) = frames.trace(frame_angle(frame))?;
             let image = &*frames.image;
             let rows = if frame == 0 { 0..image.size() } else { changed };
-            match screen.show(image, rows) {
+            if frame == 0 {
+                watch(true);
+            }
+            let shown = screen.show(image, rows);
+            if frame == 0 {
+                watch(false);
+            }
+            match shown {
                 Ok(_) if frame == 0 => {}
                 Ok(cost) => {
                     self.traces.push(time);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::{Measured, Pipeline, Report, Row, Spread, Timing};
 
 impl Report {
-    /// The report as tables, aligned for a terminal: what it was measured on, times, errors, and what it costs to display a frame.
+    /// The kernels as tables, aligned for a terminal: what they were measured on, times and errors.
     pub fn table(&self) -> String {
         let mut text = self.head();
         let names = ["scene", "stage", "kernel"];
@@ -46,7 +46,6 @@ impl Report {
             text,
             "\ntime a frame\n{times}\nerrors against reference, over all frames\n{errors}{reason}"
         );
-        text.push_str(&self.displaying());
         text
     }
 
@@ -123,7 +122,8 @@ impl Report {
         cells
     }
 
-    fn displaying(&self) -> String {
+    /// What it costs to display a frame, as a table that follows the others.
+    pub fn pipeline_table(&self) -> String {
         let mut table = Table::new(vec![
             Columns::new("", &["context", "path"]),
             Columns::new(

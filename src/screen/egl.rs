@@ -12,6 +12,7 @@ use glutin::prelude::PossiblyCurrentGlContext as _;
 
 use super::ScreenError;
 use super::offscreen::{Context, Profile};
+use crate::fault::caught;
 
 const LIBRARY: &str = "libEGL.so.1";
 const PACKAGES: &str = "libegl1 libegl-mesa0 libgl1-mesa-dri";
@@ -30,22 +31,24 @@ impl Egl {
             reason,
             packages: PACKAGES,
         };
-        let mut devices: Vec<Device> = Device::query_devices()
-            .map_err(|error| missing(error.to_string()))?
-            .collect();
+        // glutin panics where the library lacks what it takes for granted.
+        let devices = caught(|| Device::query_devices().map(Iterator::collect));
+        let mut devices: Vec<Device> = devices
+            .map_err(&missing)?
+            .map_err(|error| missing(error.to_string()))?;
         if devices.is_empty() {
             return Err(missing("it has no devices".to_owned()));
         }
         devices.sort_by_key(|device| !device.extensions().contains("EGL_MESA_device_software"));
         let mut reasons = Vec::new();
         for device in &devices {
-            match Egl::on(device, profile) {
-                Ok(egl) => return Ok(egl),
-                Err(error) => {
-                    let name = device.name().unwrap_or("unnamed device");
-                    reasons.push(format!("{name}: {error}"));
-                }
-            }
+            let reason = match caught(|| Egl::on(device, profile)) {
+                Ok(Ok(egl)) => return Ok(egl),
+                Ok(Err(error)) => error.to_string(),
+                Err(panic) => panic,
+            };
+            let name = device.name().unwrap_or("unnamed device");
+            reasons.push(format!("{name}: {reason}"));
         }
         Err(refusal(reasons.join("; ")))
     }

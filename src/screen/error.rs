@@ -64,6 +64,35 @@ pub enum ScreenError {
         /// The screen's.
         screen: u32,
     },
+    /// What may be mapped is limited (`ulimit -v`), and a driver would crash for want of it.
+    #[error(
+        "an OpenGL driver may need {needed} MiB, and the limit of this process leaves {left}: raise it (`ulimit -v`), or capture with `--through none`, which needs no OpenGL"
+    )]
+    Addresses {
+        /// MiB that are left.
+        left: u64,
+        /// MiB that may be needed.
+        needed: u64,
+    },
+    /// Threads are limited (`ulimit -u`), and a driver would wait for ever for those that it cannot have.
+    #[error(
+        "the system refuses the threads that an OpenGL driver needs ({0}): raise the limit (`ulimit -u`), or capture with `--through none`, which needs no OpenGL"
+    )]
+    Threads(std::io::Error),
+    /// What came back from the driver is not what was drawn.
+    #[error(
+        "the OpenGL driver does not give back what was drawn: at column {column}, row {row} from the bottom {back:?} instead of {drawn:?}: try another driver, or capture with `--through none`"
+    )]
+    Altered {
+        /// The first pixel that differs: its column.
+        column: u32,
+        /// Its row, counted from the bottom.
+        row: u32,
+        /// Its samples as they were drawn.
+        drawn: [f32; 3],
+        /// As they came back.
+        back: [f32; 3],
+    },
     /// The driver refused something that every OpenGL 3.3 driver should do.
     #[error(
         "the OpenGL driver refuses {what} ({reason}): try another driver, or capture with `--through none`, which needs no OpenGL"

@@ -4,14 +4,16 @@ use std::ffi::{CStr, c_void};
 use std::ops::Range;
 use std::rc::Rc;
 
+use bytemuck::cast_slice_mut;
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
 #[cfg(not(target_vendor = "apple"))]
 use super::egl::Egl;
 use super::osmesa::OsMesa;
-use super::{Placement, Screen, ScreenError, check};
+use super::{Placement, Screen, ScreenError, check, room};
 use crate::Image;
+use crate::fault::caught;
 
 /// What makes the context of an [`Offscreen`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +33,9 @@ impl Through {
         }
     }
 
-    pub(super) fn open(self, profile: Profile) -> Result<Box<dyn Context>, ScreenError> {
+    /// A context for pictures of `size` × `size` pixels.
+    pub(super) fn open(self, profile: Profile, size: u32) -> Result<Box<dyn Context>, ScreenError> {
+        room::ask(size)?;
         Ok(match self {
             #[cfg(not(target_vendor = "apple"))]
             Through::Egl => Box::new(Egl::open(profile)?),
@@ -63,10 +67,23 @@ pub(super) trait Context {
 
 impl dyn Context + '_ {
     /// Its functions; it is current.
-    pub(super) fn functions(&self) -> glow::Context {
+    pub(super) fn functions(&self) -> Result<glow::Context, ScreenError> {
         // SAFETY: the context is current and the addresses are its own functions'.
-        unsafe { glow::Context::from_loader_function_cstr(|name| self.proc_address(name)) }
+        unsafe { functions(|name| self.proc_address(name)) }
     }
+}
+
+/// The functions of OpenGL at the addresses that `address` knows.
+///
+/// # Safety
+/// A context is current, and the addresses are of its functions.
+pub(crate) unsafe fn functions(
+    address: impl FnMut(&CStr) -> *const c_void,
+) -> Result<glow::Context, ScreenError> {
+    // glow panics where a driver does not say its version.
+    // SAFETY: as the caller has promised.
+    caught(|| unsafe { glow::Context::from_loader_function_cstr(address) })
+        .map_err(|panic| ScreenError::refused("to say what it can", &panic))
 }
 
 /// A [`Screen`] in a context and a float framebuffer of its own.
@@ -87,7 +104,7 @@ impl Offscreen {
     /// # Errors
     /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else those of [`Screen::new`].
     pub fn open(through: Through, size: u32) -> Result<Offscreen, ScreenError> {
-        let context = through.open(Profile::Core)?;
+        let context = through.open(Profile::Core, size)?;
         context.make_current()?;
         let made = Offscreen::make(context.as_ref(), size);
         context.release();
@@ -100,14 +117,16 @@ impl Offscreen {
     }
 
     fn make(context: &dyn Context, size: u32) -> Result<(Screen, Framebuffer), ScreenError> {
-        let gl = Rc::new(context.functions());
-        let screen = Screen::new(gl.clone(), size)?;
+        let gl = Rc::new(context.functions()?);
+        // SAFETY: the context is current, and made current again before the screen is used or dropped.
+        let screen = unsafe { Screen::new(gl.clone(), size) }?;
         let rows = size.min(MAX_PIXELS / size);
         let framebuffer = Framebuffer::new(gl, UVec2::new(size, rows), glow::RGBA32F)?;
         Ok((screen, framebuffer))
     }
 
-    /// Uploads `image`, draws it pixel for pixel, and reads back what was drawn: the same samples, bit for bit.
+    /// Uploads `image`, draws it pixel for pixel, and reads back what was drawn: the same samples, bit for bit, from a driver that does
+    /// what OpenGL asks of it.
     ///
     /// # Errors
     /// Those of [`Screen::upload`]; [`ScreenError::Image`] where there is no memory for the picture that is read back.
@@ -236,7 +255,7 @@ impl Framebuffer {
                     rows as i32,
                     glow::RGB,
                     glow::FLOAT,
-                    glow::PixelPackData::Slice(Some(as_bytes_mut(samples))),
+                    glow::PixelPackData::Slice(Some(cast_slice_mut(samples))),
                 );
             }
             placement.origin.y -= self.size.y as i32;
@@ -254,10 +273,4 @@ impl Drop for Framebuffer {
             self.gl.delete_renderbuffer(self.renderbuffer);
         }
     }
-}
-
-/// The bytes of `samples`, as glow wants them.
-fn as_bytes_mut(samples: &mut [f32]) -> &mut [u8] {
-    // SAFETY: the same memory for the same time; any bytes make a float and a byte has no alignment.
-    unsafe { std::slice::from_raw_parts_mut(samples.as_mut_ptr().cast(), size_of_val(samples)) }
 }

@@ -10,8 +10,8 @@ use glow::HasContext as _;
 
 use super::offscreen::{Context, Framebuffer, Profile};
 use super::{CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError, Through};
-use super::{as_bytes, check, set_unpacking};
-use crate::Image;
+use super::{check, set_unpacking};
+use crate::{Image, memory};
 
 /// How pixels get into a framebuffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,7 +113,7 @@ impl DrawPixels {
                 size,
                 glow::RGB,
                 glow::FLOAT,
-                as_bytes(image.samples()).as_ptr().cast(),
+                image.samples().as_ptr().cast(),
             );
         }
     }
@@ -125,10 +125,11 @@ impl TimedScreen {
     /// # Errors
     /// Those of [`Offscreen::open`](super::Offscreen::open).
     pub fn open(through: Through, path: Path, size: u32) -> Result<TimedScreen, ScreenError> {
-        let context = through.open(match path {
+        let profile = match path {
             Path::Texture => Profile::Core,
             Path::DrawPixels => Profile::Compatibility,
-        })?;
+        };
+        let context = through.open(profile, size)?;
         context.make_current()?;
         let made = TimedScreen::make(context.as_ref(), path, size);
         context.release();
@@ -148,9 +149,10 @@ impl TimedScreen {
         path: Path,
         size: u32,
     ) -> Result<(Framebuffer, Way, Rc<glow::Context>), ScreenError> {
-        let gl = Rc::new(context.functions());
+        let gl = Rc::new(context.functions()?);
         let way = match path {
-            Path::Texture => Way::Texture(Screen::new(gl.clone(), size)?),
+            // SAFETY: the context is current, and made current again before the screen is used or dropped.
+            Path::Texture => Way::Texture(unsafe { Screen::new(gl.clone(), size) }?),
             Path::DrawPixels => Way::DrawPixels(DrawPixels::load(context)?),
         };
         let framebuffer = Framebuffer::new(gl.clone(), UVec2::splat(size), glow::RGBA8)?;
@@ -221,8 +223,7 @@ impl TimedScreen {
     fn read_back(&mut self) -> Result<(), ScreenError> {
         let length = self.size as usize * self.size as usize * 4;
         let missing = length - self.bytes.len();
-        self.bytes
-            .try_reserve_exact(missing)
+        memory::reserve(&mut self.bytes, missing)
             .map_err(|_| ScreenError::Memory { size: self.size })?;
         self.bytes.resize(length, 0);
         // SAFETY: the context is current. Its pixel-store parameters are as they were made, and rows of four bytes a pixel have no gaps

@@ -62,11 +62,12 @@ struct Shared {
 struct Counter(AtomicUsize);
 
 impl Pool {
-    /// A pool of `threads` threads, the caller's among them; 0 is one a core.
+    /// A pool of `threads` threads, the caller's among them; 0 is one a core, or as many as the system gives.
     ///
     /// # Errors
     /// Where the system refuses them.
     pub(crate) fn new(threads: usize) -> io::Result<Pool> {
+        let one_a_core = threads == 0;
         let threads = match threads {
             0 => thread::available_parallelism().map_or(1, usize::from),
             threads => threads,
@@ -91,9 +92,13 @@ impl Pool {
         for number in 1..threads {
             let shared = pool.shared.clone();
             let worker = thread::Builder::new().name(format!("tracer {number}"));
-            // Where one is refused, those before it end as the pool is dropped.
-            pool.workers
-                .push(worker.spawn(move || shared.serve(number))?);
+            match worker.spawn(move || shared.serve(number)) {
+                Ok(worker) => pool.workers.push(worker),
+                // Those that there are do the work of all.
+                Err(_) if one_a_core => break,
+                // Those before it end as the pool is dropped.
+                Err(refused) => return Err(refused),
+            }
         }
         Ok(pool)
     }

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
+use crate::screen::room;
 use crate::{Image, Kernel, Stage};
 
 use super::clipboard::Clipboard;
@@ -39,6 +40,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
     let started = Instant::now();
     let studio = Studio::new(&options)?;
     let event_loop = event_loop()?;
+    room::ask(options.size)?;
     let proxy = event_loop.create_proxy();
     let comparing = {
         let proxy = proxy.clone();
@@ -216,6 +218,21 @@ impl App<'_> {
         Ok(true)
     }
 
+    /// Looks whether the driver shows what is uploaded, where it was not looked at in this size.
+    fn examine(&mut self) {
+        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
+        let image = compared.map(|compared| &*compared.image);
+        if let (true, Some(view), Some(image)) = (
+            self.uploaded,
+            &mut self.view,
+            image.or(self.picture.as_deref()),
+        ) && let Some(differs) = view.examine(image)
+        {
+            let renderer = view.renderer().to_owned();
+            (self.report)(Event::Differs { renderer, differs });
+        }
+    }
+
     /// Shows the last picture, and sees to the next one if there is one to come.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let start = Instant::now();
@@ -234,6 +251,7 @@ impl App<'_> {
             self.playback.count_from(start - self.frame_time);
         }
         let is_new = self.upload()?;
+        self.examine();
         // The next picture is traced while this one is drawn.
         if !self.is_last() {
             self.advance(start);
@@ -457,6 +475,7 @@ impl App<'_> {
         self.frame_time = view.frame_time();
         self.clipboard = Some(Clipboard::beside(view.window()));
         self.view = Some(view);
+        (self.report)(Event::Opened);
         self.lose_texture();
         self.retitle();
         Ok(())

@@ -14,6 +14,7 @@ use winit::platform::x11::EventLoopBuilderExtX11;
 use super::ViewerError;
 use super::error::reason;
 use super::x11::Connection;
+use crate::fault::caught;
 
 /// A kind of display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,10 +76,13 @@ fn build(name: &str, reached: Reached) -> Result<EventLoop<()>, ViewerError> {
         Reached::X11(_) => builder.with_x11(),
     };
     EventLoopBuilderExtX11::with_any_thread(&mut builder, true);
-    let event_loop = builder.build().map_err(|error| ViewerError::Display {
-        server: name.to_owned(),
-        reason: reason(&error),
-    })?;
+    // winit panics where the system refuses it a file or an event.
+    let event_loop = caught(|| builder.build().map_err(|error| reason(&error)))
+        .flatten()
+        .map_err(|reason| ViewerError::Display {
+            server: name.to_owned(),
+            reason,
+        })?;
     if let Reached::X11(connection) = reached {
         connection.watch();
     }
@@ -110,7 +114,7 @@ impl Server {
                     let reason = "neither libGL.so.1 nor libEGL.so.1 is there".to_owned();
                     return Err(ViewerError::OpenGl(reason));
                 }
-                Connection::open().map(Reached::X11)
+                scale_factor().and_then(|()| Connection::open().map(Reached::X11))
             }
         };
         reached.map_err(|reason| ViewerError::Display {
@@ -143,6 +147,23 @@ fn require(server: &'static str, needed: &[Needed]) -> Result<(), ViewerError> {
 pub(super) fn load(library: &str) -> Option<Library> {
     // SAFETY: a library of the system whose initialisation asks nothing of its loader; winit and glutin load the same ones the same way.
     unsafe { Library::new(library) }.ok()
+}
+
+/// winit panics where this variable is not what it wants.
+const SCALE_FACTOR: &str = "WINIT_X11_SCALE_FACTOR";
+
+/// The size of a logical pixel, if the environment gives one, is a size.
+fn scale_factor() -> Result<(), String> {
+    let Ok(text) = env::var(SCALE_FACTOR) else {
+        return Ok(());
+    };
+    let is_size = |factor: f64| factor.is_normal() && factor > 0.0;
+    if text.is_empty() || text.eq_ignore_ascii_case("randr") || text.parse().is_ok_and(is_size) {
+        return Ok(());
+    }
+    Err(format!(
+        "{SCALE_FACTOR}={text} is neither a number above 0 nor randr"
+    ))
 }
 
 /// Somebody listens where WAYLAND_DISPLAY says. An inherited WAYLAND_SOCKET is a connection already.

@@ -23,7 +23,7 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowAttributes};
 
 use crate::Image;
-use crate::screen::{Placement, Screen};
+use crate::screen::{Differs, Placement, Screen};
 
 use super::ViewerError;
 use super::canvas::Board;
@@ -33,7 +33,7 @@ use super::panel;
 use super::rect::Rect;
 use super::zoom::Zoom;
 use growth::Growth;
-use opengl::{Failure, config, display, fitting, functions};
+use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
 
 /// The window and everything that draws in it.
 pub(super) struct View {
@@ -50,6 +50,8 @@ pub(super) struct View {
     panel: bool,
     /// What the window was asked to become for the panel.
     growth: Growth,
+    /// It has been looked whether the driver shows what is drawn.
+    examined: bool,
 }
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
@@ -121,6 +123,7 @@ impl View {
             zoom: Zoom::default(),
             panel: false,
             growth: Growth::default(),
+            examined: false,
         };
         view.renew()?;
         Ok(view)
@@ -129,6 +132,7 @@ impl View {
     /// Makes surface, context and screen, anew where they were lost. The screen's texture is empty after it.
     fn renew(&mut self) -> Result<(), Failure> {
         self.drawing = None;
+        self.examined = false;
         self.drawing = Some(Drawing::new(
             &self.config,
             &self.window,
@@ -163,6 +167,7 @@ impl View {
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
         self.growth.came(surface);
+        self.examined = false;
         self.change(|view| view.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
@@ -269,6 +274,22 @@ impl View {
             drawing.screen.finish();
         }
         Ok(start.elapsed())
+    }
+
+    /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be: once in each size of the window.
+    pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
+        let (placement, surface) = (self.placement(), self.surface);
+        let drawing = self.drawing.as_ref()?;
+        if self.examined || self.is_empty() {
+            return None;
+        }
+        self.examined = true;
+        // What shows fewer bits shows other bytes.
+        if self.config.color_buffer_type() != Some(EIGHT_BITS) {
+            return None;
+        }
+        drawing.screen.draw(surface, placement);
+        drawing.screen.first_difference(surface, placement, image)
     }
 
     /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the way
@@ -400,11 +421,12 @@ impl Drawing {
             _ => SwapInterval::Wait(NonZeroU32::MIN),
         };
         let _ = surface.set_swap_interval(&context, interval);
-        let gl = functions(&display);
+        let gl = functions(&display)?;
         // SAFETY: the context is current; every context has these two names.
         let renderer = unsafe { gl.get_parameter_string(glow::RENDERER) };
         let gl = Rc::new(gl);
-        let screen = Screen::new(gl.clone(), picture).map_err(ViewerError::from)?;
+        // SAFETY: the context is current, and stays so; where it is lost, the drop of what holds both makes it current before the screen's.
+        let screen = unsafe { Screen::new(gl.clone(), picture) }.map_err(ViewerError::from)?;
         Ok(Drawing {
             overlay: None,
             gl,

@@ -29,6 +29,14 @@ pub(crate) fn open(through: Through, size: u32) -> Option<Offscreen> {
     }
 }
 
+/// The names of the ways through OpenGL that are open here.
+#[cfg(target_os = "linux")]
+pub(crate) fn ways() -> Vec<&'static str> {
+    let all = [Through::Egl, Through::OsMesa].into_iter();
+    let open = all.filter(|&through| open(through, 8).is_some());
+    open.map(Through::name).collect()
+}
+
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_firsthit");
 
 /// The words of `line` as arguments; an empty line has none.
@@ -40,6 +48,17 @@ pub(crate) fn words(line: &str) -> impl Iterator<Item = &str> {
 pub(crate) fn program(folder: &TempDir, line: &str) -> Command {
     let mut command = Command::new(PROGRAM);
     command.current_dir(folder).args(words(line));
+    command
+}
+
+/// The program under `sh`, after `setup`.
+#[cfg(unix)]
+pub(crate) fn program_after(setup: &str, folder: &TempDir, line: &str) -> Command {
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &format!("{setup}; exec \"$0\" \"$@\""), PROGRAM])
+        .args(words(line))
+        .current_dir(folder);
     command
 }
 

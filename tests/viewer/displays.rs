@@ -1,7 +1,10 @@
 //! Displays that serve, that lack something, and that go away.
 
+use std::process::Command;
+
 use firsthit::Stage;
 
+use super::fault;
 use super::program::Program;
 use super::session::Session;
 use super::xvfb::Xvfb;
@@ -95,5 +98,84 @@ fn the_death_of_the_server_is_one_line() {
             assert_eq!(errors.lines().count(), 1, "{errors}");
             assert!(errors.contains("the display went away"), "{errors}");
         }
+    }
+}
+
+#[test]
+fn a_scale_factor_that_is_none_is_one_line() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let display = ("DISPLAY", &*xvfb.display);
+    for factor in ["0", "-1", "abc", "inf", "nan", "1e-320"] {
+        let variable = ("WINIT_X11_SCALE_FACTOR", factor);
+        refused(&[display, variable], &[&format!("{}={factor}", variable.0)]);
+    }
+}
+
+#[test]
+fn too_few_files_are_one_line() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let mut refused = 0;
+    for files in 4..24 {
+        let line = format!("ulimit -n {files}; exec \"$0\" view --exit-after-frames 1");
+        let output = Command::new("sh")
+            .args(["-c", &line, env!("CARGO_BIN_EXE_firsthit")])
+            .env("DISPLAY", &xvfb.display)
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .output()
+            .unwrap();
+        let message = String::from_utf8_lossy(&output.stderr);
+        if output.status.success() {
+            continue;
+        }
+        assert_eq!(output.status.code(), Some(1), "{files}: {message}");
+        let ours = message
+            .lines()
+            .filter(|line| line.starts_with("firsthit: "));
+        assert_eq!(ours.count(), 1, "{files}: {message}");
+        assert!(!message.contains("fault"), "{files}: {message}");
+        refused += 1;
+    }
+    assert!(refused > 0);
+}
+
+#[test]
+fn a_driver_that_has_no_version_is_one_line() {
+    let Some(environment) = fault::environment("has no version") else {
+        return;
+    };
+    for server in [&[][..], &WITHOUT_GLX] {
+        let Some(xvfb) = Xvfb::start(server) else {
+            return;
+        };
+        let [library, fault] = environment;
+        refused(
+            &[("DISPLAY", &xvfb.display), library, fault],
+            &["GL_VERSION"],
+        );
+    }
+}
+
+#[test]
+fn a_window_that_shows_a_wrong_pixel_is_told() {
+    let Some(environment) = fault::environment("shows a wrong pixel") else {
+        return;
+    };
+    for server in [&[][..], &WITHOUT_GLX] {
+        let Some(xvfb) = Xvfb::start(server) else {
+            return;
+        };
+        let arguments = ["view", "--stage", "6", "--size", "40"];
+        let mut session = Session::on(xvfb, &arguments, &environment);
+        session.type_keys("q");
+        let (status, errors) = session.program.ended();
+        assert_eq!(status.code(), Some(0), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+        assert!(errors.contains("does not show what was drawn"), "{errors}");
+        assert!(errors.contains("column 5, row 7 "), "{errors}");
     }
 }

@@ -7,13 +7,15 @@ use raw_window_handle::{HasDisplayHandle as _, RawDisplayHandle, RawWindowHandle
 use winit::event_loop::ActiveEventLoop;
 use winit::window::WindowAttributes;
 
+use crate::screen;
 use crate::viewer::ViewerError;
 use crate::viewer::error::reason;
 
 /// The functions of OpenGL in the context that is current, one of `display`.
-pub(super) fn functions(display: &Display) -> glow::Context {
+pub(super) fn functions(display: &Display) -> Result<glow::Context, Failure> {
     // SAFETY: the context is current, and the functions come from its own display.
-    unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) }
+    let functions = unsafe { screen::functions(|name| display.get_proc_address(name)) };
+    functions.map_err(|error| Failure::OpenGl(error.to_string()))
 }
 
 /// Opens OpenGL on the display of `event_loop`; on Windows through `window`.
@@ -64,6 +66,13 @@ fn preference(
     DisplayApiPreference::Cgl
 }
 
+/// What a display of today shows of a colour.
+pub(super) const EIGHT_BITS: ColorBufferType = ColorBufferType::Rgb {
+    r_size: 8,
+    g_size: 8,
+    b_size: 8,
+};
+
 /// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop could shine.
 pub(super) fn config(display: &Display) -> Result<Config, Failure> {
     let template = ConfigTemplateBuilder::new()
@@ -73,15 +82,10 @@ pub(super) fn config(display: &Display) -> Result<Config, Failure> {
         .build();
     // SAFETY: the template names no native window that could have gone.
     let configs = unsafe { display.find_configs(template) }?;
-    let eight_bits = ColorBufferType::Rgb {
-        r_size: 8,
-        g_size: 8,
-        b_size: 8,
-    };
     configs
         .min_by_key(|config| {
             (
-                config.color_buffer_type() != Some(eight_bits),
+                config.color_buffer_type() != Some(EIGHT_BITS),
                 config.supports_transparency() == Some(true),
                 config.alpha_size(),
                 config.num_samples(),

@@ -1,0 +1,58 @@
+//! The system's memory, and a line where there is no more of it.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::io::{self, Cursor, Write as _};
+
+use firsthit::memory::is_dispensable;
+
+use super::{at_once, only_once};
+
+/// The system's allocator, except that the program ends where memory is refused that it cannot do without. Otherwise whoever asked would
+/// abort or panic, each in its own words, and some only after asking for more.
+pub(crate) struct Memory;
+
+// SAFETY: every call is handed on to the system's allocator with what it came with, and what that returns is returned, or nothing is.
+unsafe impl GlobalAlloc for Memory {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller has promised.
+        checked(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller has promised.
+        checked(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as the caller has promised.
+        checked(unsafe { System.realloc(memory, layout, size) }, size)
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as the caller has promised.
+        unsafe { System.dealloc(memory, layout) };
+    }
+}
+
+/// The memory that was asked for, or the end.
+fn checked(memory: *mut u8, size: usize) -> *mut u8 {
+    if memory.is_null() && !is_dispensable() {
+        refused(size);
+    }
+    memory
+}
+
+#[cold]
+fn refused(size: usize) -> ! {
+    only_once();
+    // A line for which no memory is needed.
+    let mut line = [0; 160];
+    let mut end = Cursor::new(&mut line[..]);
+    let _ = writeln!(
+        end,
+        "firsthit: not enough memory ({size} bytes more are refused): choose a smaller size, a smaller scene or fewer threads"
+    );
+    let length = end.position() as usize;
+    let _ = io::stderr().write_all(&line[..length]);
+    at_once();
+}

@@ -1,0 +1,218 @@
+//! Promise: what the system refuses is one line and status 1, and what does not come is waited for aloud.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use crate::helpers::{PROGRAM, failed, program, program_after, succeeded, text, ways, words};
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Whether the program can be loaded at all in so many KiB.
+fn can_be_loaded(folder: &TempDir, kib: u32) -> bool {
+    let line = format!("ulimit -v {kib}");
+    let output = program_after(&line, folder, "--version").output().unwrap();
+    output.status.success()
+}
+
+#[test]
+fn memory_that_is_refused_is_one_line() {
+    let folder = folder();
+    for name in ["one.exr", "one.png"] {
+        let line = format!("capture --stage 6 --size 500 --through none -o {name}");
+        succeeded(&program(&folder, &line).output().unwrap(), &line);
+    }
+    let crowd = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/crowd.toml");
+    let least = (1..)
+        .map(|step| step << 10)
+        .find(|&kib| can_be_loaded(&folder, kib))
+        .unwrap();
+    let before = names(&folder);
+    for line in [
+        "capture --stage 6 --size 500 --through none -o a.exr",
+        "capture --stage 6 --size 500 --through none -o a.png",
+        "capture --stage 7 --size 500 --frames 0..1 --through none -o a.apng",
+        "compare one.exr one.png -o a.png",
+        "report --size 200 --frames 0..0 --kernel double --threads 1 --json a.json",
+        &format!("capture --stage 6 --size 200 --scene {crowd} --through none -o a.exr"),
+    ] {
+        let (mut refused, mut done) = (0, 0);
+        for kib in (least..).step_by(1 << 11) {
+            let limit = format!("export RUST_BACKTRACE=1; ulimit -v {kib}");
+            let output = program_after(&limit, &folder, line).output().unwrap();
+            let what = format!("{line}, {kib} KiB");
+            if output.status.success() {
+                done += 1;
+                for name in names(&folder) {
+                    if !before.contains(&name) {
+                        fs::remove_file(folder.path().join(name)).unwrap();
+                    }
+                }
+                // Threads and their heaps come in any order.
+                if done > 1 {
+                    break;
+                }
+                continue;
+            }
+            let message = failed(&output, 1, &what);
+            let said = [
+                "not enough memory",
+                "out of memory",
+                "Cannot allocate",
+                "threads cannot be",
+            ];
+            assert!(
+                said.iter().any(|said| message.contains(said)),
+                "{what}: {message}"
+            );
+            assert!(!message.contains(" 0 threads"), "{what}: {message}");
+            assert_eq!(names(&folder), before, "{what}");
+            refused += 1;
+        }
+        assert!(refused > 0, "{line}");
+    }
+}
+
+fn names(folder: &TempDir) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<_> = names.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_driver_that_could_not_have_its_memory_is_not_asked() {
+    let folder = folder();
+    for kib in [200_000, 400_000, 700_000, 1_000_000] {
+        let limit = format!("ulimit -v {kib}");
+        for through in ways() {
+            let line = format!("capture --stage 6 --size 50 --through {through} -o a.png");
+            let output = program_after(&limit, &folder, &line).output().unwrap();
+            let message = failed(&output, 1, &line);
+            assert!(message.contains("`ulimit -v`"), "{message}");
+        }
+        let line = "capture --stage 6 --size 50 -o a.png";
+        let output = program_after(&limit, &folder, line).output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        assert!(message.contains("captured through none"), "{message}");
+        // What was measured is shown, and the drivers are rows that say what they lack.
+        let line = "report --size 8 --frames 0..0 --kernel double --threads 1";
+        let output = program_after(&limit, &folder, line).output().unwrap();
+        let table = succeeded(&output, line);
+        assert!(table.contains("errors against reference"), "{table}");
+        assert!(table.contains("`ulimit -v`"), "{table}");
+    }
+}
+
+/// A user's threads are limited for all but the administrator.
+#[test]
+fn a_driver_that_could_not_have_its_threads_is_not_asked() {
+    let is_root = rustix::process::geteuid().is_root();
+    for limit in 1..=5 {
+        let run = |line: &str| {
+            let mut command = Command::new("prlimit");
+            command.arg(format!("--nproc={limit}"));
+            if is_root {
+                // As somebody who has no other processes.
+                command.args([
+                    "setpriv",
+                    "--reuid=65534",
+                    "--regid=65534",
+                    "--clear-groups",
+                ]);
+            }
+            command.arg(PROGRAM).args(words(line)).current_dir("/");
+            command.output().unwrap()
+        };
+        for through in ways() {
+            // It is not written, so that it need not be a place where that somebody may.
+            let line =
+                format!("capture --stage 6 --size 50 --threads 1 --through {through} -o a.png");
+            let start = Instant::now();
+            let message = failed(&run(&line), 1, &line);
+            assert!(message.contains("`ulimit -u`"), "{limit}: {message}");
+            assert!(start.elapsed() < Duration::from_secs(10), "{limit}");
+        }
+    }
+}
+
+/// Makes a pipe that nobody writes to.
+fn pipe(folder: &TempDir, name: &str) {
+    let made = Command::new("mkfifo")
+        .arg(folder.path().join(name))
+        .status();
+    assert!(made.unwrap().success());
+}
+
+#[test]
+fn a_pipe_that_nobody_writes_to_is_waited_for_aloud() {
+    let folder = folder();
+    for (name, line) in [
+        (
+            "scene.toml",
+            "capture --stage 6 --size 8 --through none -o a.png --scene scene.toml",
+        ),
+        ("a.exr", "compare a.exr a.exr"),
+    ] {
+        pipe(&folder, name);
+        let mut child = program(&folder, line)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let said = lines.next().unwrap().unwrap();
+        assert!(said.contains(&format!("waits for {name}")), "{said}");
+        // It still does.
+        assert!(child.try_wait().unwrap().is_none());
+        let mut pipe = fs::OpenOptions::new()
+            .write(true)
+            .open(folder.path().join(name))
+            .unwrap();
+        pipe.write_all(b"background = 1").unwrap();
+        drop(pipe);
+        let said = lines.next().unwrap().unwrap();
+        assert!(said.starts_with(&format!("firsthit: {name}: ")), "{said}");
+        assert_eq!(child.wait().unwrap().code(), Some(1));
+    }
+}
+
+#[test]
+fn a_full_standard_output_takes_no_file_along() {
+    let folder = folder();
+    let line = "report --size 2 --frames 0..0 --kernel double --threads 1 --json a.json";
+    let full = fs::File::create("/dev/full").unwrap();
+    let output = program(&folder, line).stdout(full).output().unwrap();
+    let message = failed(&output, 1, line);
+    assert!(
+        message.contains("standard output cannot be written"),
+        "{message}"
+    );
+    let text = fs::read(folder.path().join("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    assert!(
+        json["rows"].as_array().is_some_and(|rows| !rows.is_empty()),
+        "{json}"
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_written_takes_no_table_along() {
+    let folder = folder();
+    let line = "report --size 2 --frames 0..0 --kernel double --threads 1 --json a.json";
+    let output = program_after("ulimit -f 1", &folder, line)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let table = text(&output.stdout);
+    assert!(
+        table.contains("errors against reference") && table.contains("read back"),
+        "{table}"
+    );
+}
