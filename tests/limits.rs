@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use crate::helpers::{PROGRAM, failed, program, program_after, succeeded, text, ways, words};
+use crate::helpers::{
+    PROGRAM, failed, program, program_after, succeeded, text, ways, with_fault, words,
+};
 
 fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
@@ -140,6 +142,28 @@ fn a_driver_that_could_not_have_its_threads_is_not_asked() {
             assert!(message.contains("`ulimit -u`"), "{limit}: {message}");
             assert!(start.elapsed() < Duration::from_secs(10), "{limit}");
         }
+    }
+}
+
+#[test]
+fn a_fault_is_one_line_and_the_way_there_if_it_is_asked_for() {
+    let folder = folder();
+    for (name, backtrace) in [("0", false), ("1", true)] {
+        let line = "report --size 2 --frames 0..0 --kernel double --threads 1";
+        let mut command = program(&folder, line);
+        command.env("RUST_BACKTRACE", name);
+        let Some(command) = with_fault(&mut command, "has no clock") else {
+            return;
+        };
+        let output = command.output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        let version = env!("CARGO_PKG_VERSION");
+        let said = format!("firsthit: a fault of version {version} at ");
+        assert!(message.starts_with(&said), "{message}");
+        let line = message.lines().next().unwrap();
+        assert!(line.contains("please report"), "{message}");
+        assert_eq!(message.lines().count() > 1, backtrace, "{message}");
     }
 }
 

@@ -180,6 +180,39 @@ fn killed_fifty_times_it_leaves_no_file() {
     kill(50, &caught(), "names");
 }
 
+/// The memory in use by a process, in KiB.
+fn memory(child: &Child) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+#[test]
+#[ignore = "takes a minute: .ci/soak runs it"]
+fn a_hundred_thousand_frames_take_no_more_memory_than_a_thousand() {
+    let folder = folder();
+    for through in ["none", "egl"] {
+        let line =
+            format!("capture --stage 7 --size 16 --frames 0..99999 --through {through} -o a.apng");
+        let mut child = start(&folder, &line, "").unwrap();
+        let mut used = Vec::new();
+        while child.try_wait().unwrap().is_none() {
+            used.extend(memory(&child));
+            thread::sleep(Duration::from_millis(100));
+        }
+        assert!(child.wait().unwrap().success());
+        // What a frame needs comes and goes; the last word may find the program half gone.
+        let (first, second) = used[..used.len() - 1].split_at(used.len() / 2);
+        let [before, after] = [first, second].map(|half| half.iter().max().unwrap());
+        assert!(
+            after * 100 <= before * 101,
+            "{through}: {before}, then {after} KiB"
+        );
+    }
+}
+
 #[test]
 fn a_signal_ends_the_program_as_it_ends_any() {
     use std::os::unix::process::ExitStatusExt as _;

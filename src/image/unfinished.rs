@@ -9,7 +9,7 @@ use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tempfile::Builder;
 
@@ -142,24 +142,24 @@ impl Drop for Named {
     }
 }
 
-/// How long another thread may take to give a name or to take one away.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// How many milliseconds another thread may take to give a name or to take one away.
+const PATIENCE: u32 = 1000;
 
 /// Removes every file that this process has begun to save and not finished, and lets it begin and finish no other: for a program that is
 /// about to end without coming back to who saves, as on a signal. Who saves from now on waits for ever.
 ///
 /// On Linux there is mostly nothing to remove: unfinished files have no name there, where the file system can do that.
 pub fn abandon_unfinished() {
-    let start = Instant::now();
-    let names = loop {
-        match NAMES.try_lock() {
-            Ok(names) => break names,
-            Err(TryLockError::Poisoned(names)) => break names.into_inner(),
-            // The thread that holds it may be this one, which has run out of memory.
-            Err(TryLockError::WouldBlock) if start.elapsed() > PATIENCE => return,
-            Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(1)),
+    let names = (0..PATIENCE).find_map(|_| match NAMES.try_lock() {
+        Ok(names) => Some(names),
+        Err(TryLockError::Poisoned(names)) => Some(names.into_inner()),
+        Err(TryLockError::WouldBlock) => {
+            thread::sleep(Duration::from_millis(1));
+            None
         }
-    };
+    });
+    // The thread that holds it may be this one, which has run out of memory.
+    let Some(names) = names else { return };
     for name in &*names {
         let _ = fs::remove_file(name);
     }
