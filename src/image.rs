@@ -1,7 +1,9 @@
 //! The picture: N × N pixels of three linear 32-bit floats.
 
 mod animation;
+mod error;
 mod exr;
+mod format;
 mod load;
 pub(crate) mod png;
 mod save;
@@ -13,8 +15,9 @@ use std::fmt;
 use crate::memory;
 
 pub use animation::Animation;
+pub use error::SaveError;
+pub use format::Format;
 pub use load::LoadError;
-pub use save::{Format, SaveError};
 pub use unfinished::abandon_unfinished;
 
 /// The largest number of pixels along a side.

@@ -4,7 +4,9 @@
 mod agreement;
 mod bounded;
 mod double_double;
+mod error_free;
 mod expression;
+mod rounding;
 mod sine;
 
 use std::cmp::Ordering;

@@ -10,6 +10,7 @@
 
 #[cfg(feature = "program")]
 mod check;
+mod context;
 #[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
@@ -32,11 +33,11 @@ use glow::HasContext as _;
 use crate::image::{Image, ImageError, MAX_SIZE};
 #[cfg(feature = "program")]
 pub use check::Differs;
+#[cfg(feature = "program")]
+pub(crate) use context::functions;
 pub use error::ScreenError;
 #[cfg(feature = "program")]
 pub(crate) use layer::Layer;
-#[cfg(feature = "program")]
-pub(crate) use offscreen::functions;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;

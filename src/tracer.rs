@@ -9,6 +9,8 @@ mod decision;
 mod error;
 mod explain;
 mod extent;
+mod frame;
+mod in_doubt;
 mod kernel;
 mod ladder;
 mod line;
@@ -39,6 +41,7 @@ use crate::{Image, Scene, Stage};
 use arena::Arena;
 pub use decision::{Decision, Seen};
 pub use error::TraceError;
+pub use in_doubt::InDoubt;
 pub use kernel::Kernel;
 use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
@@ -47,32 +50,6 @@ pub use progress::Progress;
 use rows::{Memory, Precision, ROWS, Rows, Scratch};
 pub use simd::Simd;
 use target::Target;
-
-/// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are right.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct InDoubt {
-    /// Settled by double-doubles only.
-    pub double_double: u64,
-    /// Settled by arbitrary precision only.
-    pub arbitrary: u64,
-}
-
-impl InDoubt {
-    fn count(&mut self, rung: Rung) {
-        match rung {
-            Rung::Double => {}
-            Rung::DoubleDouble => self.double_double += 1,
-            Rung::Arbitrary => self.arbitrary += 1,
-        }
-    }
-
-    fn and(self, other: InDoubt) -> InDoubt {
-        InDoubt {
-            double_double: self.double_double + other.double_double,
-            arbitrary: self.arbitrary + other.arbitrary,
-        }
-    }
-}
 
 /// A pixel of a kernel that goes pixel by pixel.
 fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Rung) {

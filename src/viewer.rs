@@ -13,6 +13,8 @@ mod error;
 mod frames;
 mod information;
 mod layout;
+#[cfg(all(unix, not(target_vendor = "apple")))]
+mod library;
 mod lines;
 mod menu;
 mod overlay;

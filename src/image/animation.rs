@@ -5,6 +5,7 @@ use std::path::Path;
 
 use ::png::{EncodingError, Writer};
 
+use super::error::MAX_FRAMES;
 use super::whole_file::{Output, WholeFile};
 use super::{Image, SaveError, display_byte, png};
 use crate::memory;
@@ -20,8 +21,8 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// The most frames that the format can number: each takes up to two of its 2³¹ sequence numbers.
-    pub const MAX_FRAMES: u64 = 1 << 30;
+    /// The most frames that the format can number.
+    pub const MAX_FRAMES: u64 = MAX_FRAMES;
 
     /// Starts an animation of `frames` frames, `size` × `size` pixels each, to be named `path`, whatever its extension.
     ///

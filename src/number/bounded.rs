@@ -21,17 +21,10 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::double_double::{DoubleDouble, two_sum};
+use super::double_double::DoubleDouble;
+use super::error_free::two_sum;
+use super::rounding::{ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
 use super::{Doubt, Real, round_enclosure, sin_cos};
-
-/// u, the largest relative error of one rounding to f64.
-pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-
-/// 1 + 2⁻⁴⁸ = 1 + 32u.
-pub(super) const ROUND_UP: f64 = 1.0 + 64.0 * f64::EPSILON / 4.0;
-
-/// More than any chain of operations here loses to underflow, and less than any number that matters.
-pub(super) const UNDERFLOW: f64 = 1e-290;
 
 /// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity or NaN says nothing.
 #[derive(Clone, Copy, Debug)]
@@ -156,6 +149,25 @@ impl Div for Bounded {
         Bounded {
             value,
             error: (carried + UNIT_ROUNDOFF * value.abs()) * ROUND_UP + UNDERFLOW,
+        }
+    }
+}
+
+impl From<Bounded> for DoubleDouble {
+    fn from(number: Bounded) -> DoubleDouble {
+        DoubleDouble {
+            high: number.value,
+            low: 0.0,
+            error: number.error,
+        }
+    }
+}
+
+impl From<DoubleDouble> for Bounded {
+    fn from(number: DoubleDouble) -> Bounded {
+        Bounded {
+            value: number.high,
+            error: (number.error + number.low.abs()) * ROUND_UP,
         }
     }
 }

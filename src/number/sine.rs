@@ -9,7 +9,8 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 
 use super::Real;
-use super::double_double::{DoubleDouble, two_sum};
+use super::double_double::DoubleDouble;
+use super::error_free::two_sum;
 
 /// The sine and the cosine of the f64 `alpha` taken exactly, each rounded to nearest: the same bits on every platform,
 /// which the system's library does not promise. An angle that is not finite has neither: both are NaN.

@@ -11,7 +11,7 @@ use glutin::display::GlDisplay as _;
 use glutin::prelude::PossiblyCurrentGlContext as _;
 
 use super::ScreenError;
-use super::offscreen::{Context, Profile};
+use super::context::{Context, Profile};
 use crate::fault::caught;
 
 const LIBRARY: &str = "libEGL.so.1";

@@ -1,6 +1,5 @@
 //! A screen without a window: the picture goes the whole way through OpenGL and comes back.
 
-use std::ffi::{CStr, c_void};
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -8,12 +7,12 @@ use bytemuck::cast_slice_mut;
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
+use super::context::{Context, Profile};
 #[cfg(not(target_vendor = "apple"))]
 use super::egl::Egl;
 use super::osmesa::OsMesa;
 use super::{Placement, Screen, ScreenError, check, room};
 use crate::Image;
-use crate::fault::caught;
 
 /// What makes the context of an [`Offscreen`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,46 +43,6 @@ impl Through {
             Through::OsMesa => Box::new(OsMesa::open(profile)?),
         })
     }
-}
-
-/// Which OpenGL a context has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Profile {
-    /// Version 3.3 without what is out of date.
-    Core,
-    /// With it: what the document was written for.
-    Compatibility,
-}
-
-/// An OpenGL context that needs no window. It is released when dropped.
-pub(super) trait Context {
-    /// Makes it the context of this thread.
-    fn make_current(&self) -> Result<(), ScreenError>;
-    /// Leaves this thread without a context.
-    fn release(&self);
-    /// The address of an OpenGL function; the context is current.
-    fn proc_address(&self, name: &CStr) -> *const c_void;
-}
-
-impl dyn Context + '_ {
-    /// Its functions; it is current.
-    pub(super) fn functions(&self) -> Result<glow::Context, ScreenError> {
-        // SAFETY: the context is current and the addresses are its own functions'.
-        unsafe { functions(|name| self.proc_address(name)) }
-    }
-}
-
-/// The functions of OpenGL at the addresses that `address` knows.
-///
-/// # Safety
-/// A context is current, and the addresses are of its functions.
-pub(crate) unsafe fn functions(
-    address: impl FnMut(&CStr) -> *const c_void,
-) -> Result<glow::Context, ScreenError> {
-    // glow panics where a driver does not say its version.
-    // SAFETY: as the caller has promised.
-    caught(|| unsafe { glow::Context::from_loader_function_cstr(address) })
-        .map_err(|panic| ScreenError::refused("to say what it can", &panic))
 }
 
 /// A [`Screen`] in a context and a float framebuffer of its own.

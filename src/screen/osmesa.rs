@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use libloading::Library;
 
 use super::ScreenError;
-use super::offscreen::{Context, Profile};
+use super::context::{Context, Profile};
 
 const LIBRARY: &str = "libOSMesa.so.8";
 const OTHER_NAMES: [&str; 2] = ["libOSMesa.so.6", "libOSMesa.so"];

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
-use super::offscreen::{Context, Framebuffer, Profile};
+use super::context::{Context, Profile};
+use super::offscreen::Framebuffer;
 use super::{CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError, Through};
 use super::{check, set_unpacking};
 use crate::{Image, memory};

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use bumpalo::Bump;
 
 use super::arena::collect;
+use super::frame::{Frame, reflect};
 use super::vector::Vector;
-use super::view::{Frame, reflect};
 use crate::number::{Bounded, Real};
 use crate::scene::Scene;
 

@@ -21,6 +21,7 @@
 
 mod color;
 mod inter_point;
+mod unit;
 
 use glam::{DVec3, dvec3};
 
@@ -35,6 +36,7 @@ use color::get_pixel_color;
 use inter_point::{
     Triangle, get_inter_point_sphere, get_inter_point_surface, get_inter_point_tetrahedron,
 };
+use unit::get_unit;
 
 /// A scene of the document's shape, seen in one frame.
 pub(super) struct Listing<'a> {
@@ -270,8 +272,4 @@ fn get_projection(d: DVec3, n: DVec3) -> DVec3 {
 
 fn get_normal_sphere(point: DVec3, sphere: &Sphere) -> DVec3 {
     get_unit(point - sphere.center)
-}
-
-fn get_unit(v: DVec3) -> DVec3 {
-    v / v.length()
 }

@@ -74,6 +74,7 @@ mod ball;
 mod border;
 #[cfg(test)]
 mod bounds;
+mod caster;
 mod chord;
 mod column;
 mod contest;
@@ -85,24 +86,29 @@ mod lighting;
 mod memory;
 mod order;
 mod paint;
+mod parts;
 mod place;
 mod plain;
 mod plan;
+mod precision;
+mod reaches;
+mod rounding;
 mod row;
 mod seeing;
+mod shaded;
 mod shape;
+mod sheet;
 mod solids;
 mod span;
 mod sweep;
 
 use std::ops::Range;
 
-use bumpalo::Bump;
 use fearless_simd::Level;
 
-use super::InDoubt;
 use super::arena::Arena;
 use super::decision::Decision;
+use super::in_doubt::InDoubt;
 use super::ladder::Lines;
 use super::pixel::quadrant;
 use super::progress::Progress;
@@ -114,11 +120,13 @@ use floor::Floor;
 use lanes::Shading;
 pub(super) use memory::Memory;
 use paint::{AllPaints, PaintNumber, Paints};
-use place::Screen;
+use parts::Parts;
+pub(super) use place::ROWS;
+use place::{Columns, Screen};
 use plan::{Plan, Seen, Show};
-use row::{Columns, Row};
+pub(super) use precision::Precision;
+use row::Row;
 use solids::{Body, Solids};
-pub(super) use span::ROWS;
 use sweep::Sweep;
 
 /// A frame, ready to be traced row by row.
@@ -137,26 +145,6 @@ pub(super) struct Rows<'f, P> {
     /// The picture of code 2-1, where that is the stage.
     quadrants: Option<[PaintNumber; 4]>,
     precision: Precision,
-}
-
-/// The arithmetic that spheres are shaded with.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Precision {
-    /// f32.
-    Single,
-    /// f64.
-    Double,
-    /// f64, and pixels that its errors may make wrong are asked for by themselves.
-    Bounded,
-}
-
-/// What a frame's rows are made of, as they are prepared.
-struct Parts<'f, 'c> {
-    screen: Screen,
-    arena: &'f Bump,
-    borders: Borders<'f>,
-    paints: Paints<'f, 'c>,
-    balls: usize,
 }
 
 /// What the tracing of a row needs, kept for the next.

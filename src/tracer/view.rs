@@ -1,13 +1,5 @@
 //! The scene as one frame sees it.
 //!
-//! # View space
-//!
-//! The scene is turned by α instead of the eye, and measured in thirds of a pixel from the picture's centre: x right,
-//! y up, z toward the eye, a scene's length 1 being 3N/2. There the pixel (x, y) has its place on the screen at
-//! e = 3 (x − N/2, y − N/2, N/2), the eye looks along −(0, 3, 10), which is −10 w, and a ray reaches the surface at
-//! t = (y − N/2) − (N/2) · height. Directions need no unit length, so nothing is rounded that need not be: pixels and eye
-//! rays are small whole or half numbers, and at α = 0 so is a scene of short binary fractions.
-//!
 //! # The mirror
 //!
 //! What a ray sees in the surface is what the same ray, going on straight, would see of the scene reflected in the
@@ -17,106 +9,19 @@
 use std::cmp::Ordering;
 
 use bumpalo::Bump;
-use glam::DVec3;
 
 use super::arena::Room;
 use super::extent::Extent;
-use super::line::{Direction, Hit, Line, Normal};
+use super::frame::{Frame, looking, reflect};
+use super::line::{Hit, Line, Normal};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
-use super::surface::Surface;
 use super::tetrahedron::{Sight, Tetrahedron};
 use super::vector::Vector;
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Support};
 
-/// How the scene is turned and scaled into view space.
-#[derive(Clone, Copy)]
-pub(super) struct Frame<R> {
-    pub(super) sin: R,
-    pub(super) cos: R,
-    /// 3N/2.
-    pub(super) scale: R,
-}
-
 impl<R: Real> Frame<R> {
-    /// `sin` and `cos` are those of α, `size` is N.
-    pub(super) fn new(sin: R, cos: R, size: u32) -> Self {
-        Frame {
-            sin,
-            cos,
-            scale: R::exact(1.5 * f64::from(size)),
-        }
-    }
-
-    /// The height of the plane that reflects, in view space.
-    pub(super) fn mirror(&self, scene: &Scene) -> Option<R> {
-        scene
-            .surface()
-            .map(|surface| R::exact(surface.height) * self.scale)
-    }
-
-    fn turn(&self, v: DVec3) -> Vector<R> {
-        let v = Vector::<R>::exact(v);
-        Vector::new(
-            v.x * self.cos - v.z * self.sin,
-            v.y,
-            v.x * self.sin + v.z * self.cos,
-        )
-    }
-
-    pub(super) fn place(&self, point: DVec3) -> Vector<R> {
-        self.turn(point) * self.scale
-    }
-
-    /// The surface in view space.
-    pub(super) fn surface(&self, scene: &Scene) -> Option<Surface<R>> {
-        let surface = scene.surface()?;
-        Some(Surface {
-            height: self.mirror(scene)?,
-            half_width: R::exact(surface.half_width) * self.scale,
-            sin: self.sin,
-            cos: self.cos,
-            support: scene.facts().surface?,
-        })
-    }
-
-    /// A tetrahedron in view space, reflected in the plane of height `mirror`.
-    fn tetrahedron(&self, scene: &Scene, index: usize, mirror: Option<R>) -> Tetrahedron<R> {
-        let (tetrahedron, facts) = (&scene.tetrahedra()[index], scene.facts());
-        let vertices = tetrahedron
-            .vertices
-            .map(|vertex| reflect(self.place(vertex), mirror));
-        // A reflection turns a right hand into a left one.
-        let right_handed = tetrahedron.right_handed != mirror.is_some();
-        Tetrahedron::new(
-            vertices,
-            right_handed,
-            facts.faces[index],
-            facts.facing_light[index],
-        )
-    }
-
-    /// The way to the light, reflected for the mirror.
-    fn way_to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
-        let direction = scene.light().scaled_direction();
-        let turned = -self.turn(direction);
-        Direction {
-            vector: if mirrored {
-                Vector::new(turned.x, -turned.y, turned.z)
-            } else {
-                turned
-            },
-            // No turning changes it, and without one less is rounded.
-            squared_length: Vector::exact(direction).squared_length(),
-        }
-    }
-
-    /// h, where v + l is not 0.
-    pub(super) fn halfway(&self, scene: &Scene, mirrored: bool) -> Vector<R> {
-        halfway(&looking(), &self.way_to_light(scene, mirrored))
-    }
-
     /// The signs that a view of this frame is made with.
     pub(super) fn bearings<'f>(
         &self,
@@ -208,23 +113,6 @@ impl<'f> FrameBearings<'f> {
             direct: bearings(false)?,
             mirrored: if mirrors { Some(bearings(true)?) } else { None },
         })
-    }
-}
-
-/// The reflection in the horizontal plane of height `mirror`, if there is one.
-pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
-    match mirror {
-        Some(height) => Vector::new(point.x, height + height - point.y, point.z),
-        None => point,
-    }
-}
-
-/// The way every eye ray goes: −10 w, of length √109.
-pub(super) fn looking<R: Real>() -> Direction<R> {
-    let vector = Vector::new(R::exact(0.0), R::exact(-3.0), R::exact(-10.0));
-    Direction {
-        vector,
-        squared_length: R::exact(109.0),
     }
 }
 

@@ -6,13 +6,13 @@ use std::env;
 use std::os::unix::net::UnixStream;
 use std::path::PathBuf;
 
-use libloading::Library;
 use winit::event_loop::EventLoop;
 use winit::platform::wayland::EventLoopBuilderExtWayland as _;
 use winit::platform::x11::EventLoopBuilderExtX11;
 
 use super::ViewerError;
 use super::error::reason;
+use super::library::load;
 use super::x11::Connection;
 use crate::fault::caught;
 
@@ -142,11 +142,6 @@ fn require(server: &'static str, needed: &[Needed]) -> Result<(), ViewerError> {
         libraries: join(|needed| needed.0, ", "),
         packages: join(|needed| needed.1, " "),
     })
-}
-
-pub(super) fn load(library: &str) -> Option<Library> {
-    // SAFETY: a library of the system whose initialisation asks nothing of its loader; winit and glutin load the same ones the same way.
-    unsafe { Library::new(library) }.ok()
 }
 
 /// winit panics where this variable is not what it wants.

@@ -27,7 +27,7 @@ use crate::screen::{Differs, Placement, Screen};
 
 use super::ViewerError;
 use super::canvas::Board;
-use super::layout::Layout;
+use super::layout::{Layout, with_panel};
 use super::overlay::Overlay;
 use super::panel;
 use super::rect::Rect;
@@ -173,6 +173,33 @@ impl View {
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
             drawing.surface.resize(&drawing.context, width, height);
         }
+    }
+
+    /// Opens or closes the panel. The window grows by what the panel needs, where it may, and shrinks again.
+    pub(super) fn show_panel(&mut self, open: bool) {
+        if self.panel == open {
+            return;
+        }
+        let extent = self.zoom_to_fit().extent;
+        self.change(|view| view.panel = open);
+        if self.is_empty() {
+            return;
+        }
+        let (window, surface) = (&self.window, self.surface);
+        let size = if open {
+            let wanted = with_panel(surface, extent, panel::wanted(self.cell()));
+            self.growth.grow(window, surface, wanted)
+        } else {
+            self.growth.shrink(window, surface)
+        };
+        if let Some(size) = size {
+            self.resize(size);
+        }
+    }
+
+    /// Until when a new size of the window is waited for, if it is.
+    pub(super) fn awaits_size(&mut self, now: Instant) -> Option<Instant> {
+        self.growth.awaited(now)
     }
 
     /// Changes what the layout depends on: what was in the middle of the picture's part stays there.

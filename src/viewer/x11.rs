@@ -7,7 +7,7 @@ use std::sync::Once;
 use std::thread;
 
 use super::ViewerError;
-use super::server::load;
+use super::library::load;
 
 /// The X extensions that winit takes for granted.
 const EXTENSIONS: [&CStr; 3] = [c"RANDR", c"XInputExtension", c"XKEYBOARD"];

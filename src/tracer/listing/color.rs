@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::get_unit;
+use super::unit::get_unit;
 use crate::scene::Scene;
 
 /// Code 4-1. `scene` holds the document's `Light I`: its ka, kd, ks are the material's, its Ia and Ib the light's.

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, dvec3};
 
-use super::get_unit;
+use super::unit::get_unit;
 use crate::scene::{Sphere, Surface};
 
 /// A face of a tetrahedron, its vertices counter-clockwise as seen from where `normal` points.

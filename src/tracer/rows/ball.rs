@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 use super::ellipse::{Ellipse, Off};
 use super::lighting::{Highlight, Lighting};
-use super::shape::{MORE, U};
+use super::rounding::{MORE, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::sphere::Sphere;

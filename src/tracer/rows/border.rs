@@ -7,8 +7,8 @@ use bumpalo::collections::Vec as Growing;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x8};
 
+use super::place::ROWS;
 use super::shape::Shape;
-use super::span::ROWS;
 use crate::tracer::arena::collect;
 
 /// What a border is of.

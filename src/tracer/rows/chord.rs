@@ -13,11 +13,9 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::ball::{Ball, Form};
-use super::place::{Screen, in_columns, places, put_columns};
-use super::row::Columns;
-use super::shape::U;
-use super::solids::ShadedBall;
-use super::span::ROWS;
+use super::place::{Columns, ROWS, Screen, in_columns, places, put_columns};
+use super::rounding::U;
+use super::shaded::ShadedBall;
 
 /// Rounding moves a place by less than so many columns; where that is not so, what is guessed with it is found to be wrong.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;

@@ -1,8 +1,8 @@
 //! What is in front where the order of solids depends on the row and the column.
 
 use super::Rows;
+use super::place::Columns;
 use super::plan::{Contest, Plan, Seen, Show};
-use super::row::Columns;
 use crate::tracer::ladder::Lines;
 
 /// What is in front of all else in some columns.

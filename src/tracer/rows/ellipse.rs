@@ -3,9 +3,10 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::half_plane::Sheet;
 use super::place::{Screen, in_columns};
-use super::shape::{MORE, NOWHERE, Reaches, U};
+use super::reaches::{NOWHERE, Reaches};
+use super::rounding::{MORE, U};
+use super::sheet::Sheet;
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::vector::Vector;

@@ -1,10 +1,12 @@
 //! The surface as a frame's rows cross it.
 
-use super::Parts;
 use super::border::Border;
-use super::half_plane::{HalfPlane, Sheet};
+use super::half_plane::HalfPlane;
 use super::paint::PaintNumber;
-use super::shape::{MORE, Shape, U};
+use super::parts::Parts;
+use super::rounding::{MORE, U};
+use super::shape::Shape;
+use super::sheet::Sheet;
 use super::solids::{Solids, shadows_on};
 use crate::number::{Bounded, Real};
 use crate::scene::Side;

@@ -4,20 +4,11 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use super::place::Screen;
-use super::shape::{MORE, NOWHERE, Reaches, U};
+use super::reaches::{NOWHERE, Reaches};
+use super::rounding::{MORE, U};
+use super::sheet::Sheet;
 use crate::number::{Bounded, Real};
-use crate::scene::Support;
 use crate::tracer::tetrahedron::HalfSpace;
-use crate::tracer::vector::Vector;
-
-/// Points that the pixels' rays reach on a plane: `origin` + X · `per_column` + Y · `per_row`.
-pub(super) struct Sheet {
-    pub(super) origin: Vector<Bounded>,
-    pub(super) per_column: Vector<Bounded>,
-    pub(super) per_row: Vector<Bounded>,
-    /// The plane, if rays leave it.
-    pub(super) plane: Option<Support>,
-}
 
 /// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
 pub(super) struct HalfPlane {

@@ -1,6 +1,6 @@
 //! The light of a view in the axes of q, m and s, as in `ball.rs`: what the shading of all its spheres has in common.
 
-use super::shape::MORE;
+use super::rounding::MORE;
 use crate::number::{Bounded, Real};
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;

@@ -1,7 +1,7 @@
 //! What is remembered of a row for the next frame.
 
 use super::paint::Bits;
-use super::row::Columns;
+use super::place::Columns;
 
 /// The columns of a row that were last given one colour.
 #[derive(Default)]

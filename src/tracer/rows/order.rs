@@ -6,8 +6,9 @@
 use bumpalo::Bump;
 
 use crate::number::{Bounded, Real};
+use crate::tracer::frame::looking;
 use crate::tracer::vector::Vector;
-use crate::tracer::view::{View, looking};
+use crate::tracer::view::View;
 
 /// Beyond so many solids there are too many pairs to ask for all of them in every frame.
 const MOST: usize = 16;

@@ -3,7 +3,11 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::span::ROWS;
+/// Rows are crossed so many at a time.
+pub(in crate::tracer) const ROWS: usize = 8;
+
+/// Columns, from the first to before the last.
+pub(super) type Columns = (u32, u32);
 
 /// Columns and rows of pixels, and their places.
 #[derive(Clone, Copy)]

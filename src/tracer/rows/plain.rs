@@ -4,8 +4,9 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdElement};
 
 use super::ball::{Ball, Coefficients, Cycle, Form};
-use super::lanes::{Caster, Run, narrow, put, spread};
-use super::solids::ShadedBall;
+use super::caster::Caster;
+use super::lanes::{Run, narrow, put, spread};
+use super::shaded::ShadedBall;
 
 /// A float of a kernel.
 pub(super) trait Lane: SimdElement {

@@ -8,11 +8,12 @@ use super::chord::{Chord, bit_of};
 use super::lanes::{self, Run, Shading};
 use super::memory::Memory;
 use super::paint::{self, Paint};
-use super::place::Screen;
-use super::solids::ShadedBall;
-use super::{Precision, plain};
-use crate::tracer::InDoubt;
+use super::place::{Columns, Screen};
+use super::plain;
+use super::precision::Precision;
+use super::shaded::ShadedBall;
 use crate::tracer::decision::Decision;
+use crate::tracer::in_doubt::InDoubt;
 use crate::tracer::ladder::Pixels;
 
 /// A row that is being written, of some neighbouring ones.
@@ -34,9 +35,6 @@ pub(super) struct Row<'r> {
     pub(super) pending: Option<(Range<usize>, &'r Paint)>,
     pub(super) in_doubt: InDoubt,
 }
-
-/// Columns, from the first to before the last.
-pub(super) type Columns = (u32, u32);
 
 /// The columns of `columns` that are among others: none, somewhere among them, if there are none.
 fn both(columns: Columns, others: Columns) -> Columns {

@@ -9,32 +9,15 @@
 //!
 //! A root is computed in f64 with a bound on its error, derived where it is used. The columns beyond the bound are decided;
 //! those within it, rarely one, are asked one by one.
-//!
-//! u is 2⁻⁵³, the largest relative error of an f64 operation. Bounds are sums of terms that are not negative; computing them rounds
-//! too, each by less than 2⁻⁴⁰, for which [`MORE`] makes up.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use super::ellipse::Ellipse;
 use super::half_plane::HalfPlane;
-use super::place::{Screen, places};
-use super::span::{ROWS, Spans};
-
-/// u, the largest relative error of one rounding to f64.
-pub(super) const U: f64 = f64::EPSILON / 2.0;
-
-/// 1 + 2⁻³⁹.
-pub(super) const MORE: f64 = 1.0 + 8192.0 * f64::EPSILON;
-
-/// Where columns begin and end in as many rows as there are lanes, given in columns: the first at or after a place, up to another place.
-pub(super) struct Reaches<V> {
-    pub(super) possible: [V; 2],
-    pub(super) certain: [V; 2],
-}
-
-/// No column lies up to this place.
-pub(super) const NOWHERE: f64 = -1.0;
+use super::place::{ROWS, Screen, places};
+use super::reaches::Reaches;
+use super::span::Spans;
 
 /// A convex part of the picture: what half-planes and an ellipse have in common.
 pub(super) struct Shape<'f> {

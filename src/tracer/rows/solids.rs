@@ -6,26 +6,30 @@ use std::ops::Range;
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 
-use super::Parts;
 use super::ball::Ball;
 use super::border::Border;
+use super::caster::{Caster, Passing};
 use super::ellipse::{Ellipse, Lines, Off};
-use super::half_plane::{HalfPlane, Sheet};
-use super::lanes::{Caster, Passing};
+use super::half_plane::HalfPlane;
 use super::lighting::Lighting;
 use super::order::Order;
 use super::paint::PaintNumber;
+use super::parts::Parts;
 use super::place::Screen;
-use super::shape::{MORE, Shape, U};
+use super::rounding::{MORE, U};
+use super::shaded::ShadedBall;
+use super::shape::Shape;
+use super::sheet::Sheet;
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Support};
 use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::decision::{Decision, Seen};
+use crate::tracer::frame::looking;
 use crate::tracer::pixel::Picture;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
-use crate::tracer::view::{View, looking};
+use crate::tracer::view::View;
 
 /// All solids that take part in a stage.
 pub(super) struct Solids<'f> {
@@ -50,18 +54,6 @@ pub(super) enum Body<'f> {
     Facets(&'f [Facet], &'f [Pair]),
     /// Each is to be asked for.
     Unknown,
-}
-
-/// A sphere that is shaded.
-pub(super) struct ShadedBall<'f> {
-    /// Its number among those of the frame.
-    pub(super) number: usize,
-    pub(super) ball: Ball,
-    /// What may throw a shadow on it.
-    pub(super) casters: &'f [Caster<'f>],
-    /// Its decision in the light.
-    pub(super) lit: Decision,
-    pub(super) in_shadow: PaintNumber,
 }
 
 /// A face that eye rays enter.

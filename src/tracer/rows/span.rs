@@ -3,10 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::place::put_columns;
-
-/// Rows are crossed so many at a time.
-pub(in crate::tracer) const ROWS: usize = 8;
+use super::place::{ROWS, put_columns};
 
 /// One bit for each of them.
 const ALL: u64 = (1 << ROWS) - 1;

@@ -8,9 +8,8 @@ use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
 
 use super::border::AllBorders;
 use super::column::Column;
-use super::place::Screen;
+use super::place::{ROWS, Screen};
 use super::plan::{Packed, Seen};
-use super::span::ROWS;
 
 /// Where so many crossings change places in a row, it is put in order without asking whether it is.
 const MANY: usize = 8;

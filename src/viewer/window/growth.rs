@@ -4,10 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
-
-use super::View;
-use crate::viewer::layout::with_panel;
-use crate::viewer::panel;
+use winit::window::Window;
 
 /// How long a window that was asked for another size is not drawn: a window manager may refuse.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -29,64 +26,62 @@ impl Growth {
             *after = surface;
         }
     }
-}
 
-impl View {
-    /// Opens or closes the panel. A window that is neither maximised nor fills the screen grows by what
-    /// the panel needs, and shrinks again unless it was given another size meanwhile.
-    pub(in crate::viewer) fn show_panel(&mut self, open: bool) {
-        if self.panel == open {
-            return;
+    /// Asks a window that is neither maximised nor fills the screen to become as large as `wanted` for the panel, where the monitor has
+    /// the room. Its new size, where it has that at once.
+    pub(super) fn grow(
+        &mut self,
+        window: &Window,
+        surface: UVec2,
+        wanted: UVec2,
+    ) -> Option<PhysicalSize<u32>> {
+        let most = window.current_monitor().map(|monitor| monitor.size());
+        let most = most.map_or(UVec2::MAX, |size| UVec2::new(size.width, size.height));
+        let size = wanted.min(most).max(surface);
+        self.grown = None;
+        if is_fixed(window) || size == surface {
+            return None;
         }
-        let extent = self.zoom_to_fit().extent;
-        self.change(|view| view.panel = open);
-        let fixed = self.window.fullscreen().is_some() || self.window.is_maximized();
-        let grown = self.growth.grown.take();
-        let size = if open {
-            let most = self.window.current_monitor().map(|monitor| monitor.size());
-            let most = most.map_or(UVec2::MAX, |size| UVec2::new(size.width, size.height));
-            let size = with_panel(self.surface, extent, panel::wanted(self.cell()));
-            size.min(most).max(self.surface)
-        } else {
-            match grown {
-                Some([before, after]) if after == self.surface => before,
-                _ => self.surface,
-            }
-        };
-        if fixed || self.is_empty() || size == self.surface {
-            return;
-        }
-        if open {
-            self.growth.grown = Some([self.surface, size]);
-            self.make_room(size.x - self.surface.x);
-        }
-        self.growth.awaited = Some(Instant::now() + PATIENCE);
-        let asked = PhysicalSize::new(size.x, size.y);
-        if let Some(size) = self.window.request_inner_size(asked) {
-            self.resize(size);
-        }
+        self.grown = Some([surface, size]);
+        make_room(window, size.x - surface.x);
+        self.ask(window, size)
     }
 
-    /// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by
-    /// `growth`, where the desktop says where it is.
-    fn make_room(&self, growth: u32) {
-        let (Ok(place), Some(monitor)) =
-            (self.window.outer_position(), self.window.current_monitor())
-        else {
-            return;
-        };
-        let right = place.x + (self.window.outer_size().width + growth) as i32;
-        let beyond = right - (monitor.position().x + monitor.size().width as i32);
-        let left = (place.x - beyond.max(0)).max(monitor.position().x);
-        if left < place.x {
-            let place = PhysicalPosition::new(left, place.y);
-            self.window.set_outer_position(place);
+    /// Asks a window that has grown to shrink again, unless it was given another size meanwhile. Its new size, where it has that at once.
+    pub(super) fn shrink(&mut self, window: &Window, surface: UVec2) -> Option<PhysicalSize<u32>> {
+        let [before, after] = self.grown.take()?;
+        if is_fixed(window) || after != surface || before == surface {
+            return None;
         }
+        self.ask(window, before)
+    }
+
+    fn ask(&mut self, window: &Window, size: UVec2) -> Option<PhysicalSize<u32>> {
+        self.awaited = Some(Instant::now() + PATIENCE);
+        window.request_inner_size(PhysicalSize::new(size.x, size.y))
     }
 
     /// Until when a new size of the window is waited for, if it is.
-    pub(in crate::viewer) fn awaits_size(&mut self, now: Instant) -> Option<Instant> {
-        self.growth.awaited.take_if(|until| *until <= now);
-        self.growth.awaited
+    pub(super) fn awaited(&mut self, now: Instant) -> Option<Instant> {
+        self.awaited.take_if(|until| *until <= now);
+        self.awaited
+    }
+}
+
+fn is_fixed(window: &Window) -> bool {
+    window.fullscreen().is_some() || window.is_maximized()
+}
+
+/// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by `growth`, where the desktop says where
+/// it is.
+fn make_room(window: &Window, growth: u32) {
+    let (Ok(place), Some(monitor)) = (window.outer_position(), window.current_monitor()) else {
+        return;
+    };
+    let right = place.x + (window.outer_size().width + growth) as i32;
+    let beyond = right - (monitor.position().x + monitor.size().width as i32);
+    let left = (place.x - beyond.max(0)).max(monitor.position().x);
+    if left < place.x {
+        window.set_outer_position(PhysicalPosition::new(left, place.y));
     }
 }
