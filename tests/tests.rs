@@ -23,6 +23,7 @@ mod drivers;
 mod explain;
 mod helpers;
 mod image_files;
+mod imports;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod limits;
 mod listing;
