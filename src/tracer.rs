@@ -21,7 +21,7 @@ pub(crate) mod pool;
 mod progress;
 #[cfg(test)]
 mod rational;
-mod rows;
+mod scanline;
 mod shading;
 mod simd;
 mod sphere;
@@ -47,7 +47,7 @@ use ladder::{Ladder, Lines, Pixels, Plain, Rung};
 use listing::Listing;
 use pool::{Pool, lock};
 pub use progress::Progress;
-use rows::{Memory, Precision, ROWS, Rows, Scratch};
+use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
 pub use simd::Simd;
 use target::Target;
 
@@ -57,7 +57,7 @@ fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Ru
     (pixels.explain(column, row, traced), rung)
 }
 
-/// Rows are handed to threads in bands of so many: those that are crossed at once, so that no two threads cross the same. They are few
+/// RowTracer are handed to threads in bands of so many: those that are crossed at once, so that no two threads cross the same. They are few
 /// enough that the last band of one is not long waited for by the others, and so many that claiming them costs nothing beside that.
 const BAND: usize = ROWS;
 
@@ -73,7 +73,7 @@ pub struct Tracer {
     /// Behind a mutex that nobody locks, so that a tracer can be shared to explain pixels.
     arena: Mutex<Arena>,
     /// What is known of the rows of the frame that was traced last to be traced over.
-    memory: Vec<Memory>,
+    memory: Vec<RowHistory>,
     /// The number of that frame; 0 before there is one.
     frame: u64,
 }
@@ -171,7 +171,7 @@ impl Tracer {
             .iter_mut()
             .for_each(|row| row.is_written = false);
         self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)?;
-        let is_written = |row: &Memory| row.is_written;
+        let is_written = |row: &RowHistory| row.is_written;
         let first = self.memory.iter().position(is_written);
         let last = self.memory.iter().rposition(is_written);
         Ok(first
@@ -266,7 +266,7 @@ impl Tracer {
         let size = pixels.bounded().size as usize;
         let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
         let (rows, mut scratch) = (
-            Rows::new(pixels, precision, self.simd.0, arena),
+            RowTracer::new(pixels, precision, self.simd.0, arena),
             Scratch::default(),
         );
         rows.begin(&mut scratch);
@@ -313,9 +313,9 @@ impl Tracer {
             Extent::Changes => {
                 let known = self.frame != 0 && image.frame() == self.frame;
                 if !known {
-                    memory.iter_mut().for_each(Memory::clear);
+                    memory.iter_mut().for_each(RowHistory::clear);
                 }
-                memory.resize_with(n as usize, Memory::default);
+                memory.resize_with(n as usize, RowHistory::default);
                 self.frame = next_frame();
                 let samples = image.samples_of_frame(self.frame);
                 (Some(memory.as_mut_slice()), samples)
@@ -358,7 +358,7 @@ impl Tracer {
         target: Target<'_>,
         arena: &Arena,
     ) -> InDoubt {
-        let rows = Rows::new(pixels, precision, self.simd.0, arena);
+        let rows = RowTracer::new(pixels, precision, self.simd.0, arena);
         let size = target.size;
         for local in &mut self.local {
             rows.begin(&mut inner(local).scratch);
@@ -395,7 +395,7 @@ impl Tracer {
         self.each_band(target, |first, band, _| {
             let mut in_doubt = InDoubt::default();
             for (number, row) in (first..).zip(band.split(1)) {
-                if let Some(memory) = row.memory.and_then(<[Memory]>::first_mut) {
+                if let Some(memory) = row.memory.and_then(<[RowHistory]>::first_mut) {
                     memory.is_written = true;
                 }
                 let mut decisions = row.decisions.into_iter().flatten();

@@ -137,21 +137,19 @@ fn graph(files: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>>
     let mut passed_on: BTreeMap<(String, String), (String, String)> = BTreeMap::new();
     for (module, text) in files {
         // What lies in a module within a file belongs to the file.
-        let mut text = text.clone();
-        while let Some(at) = text.find(" {\n    use super::") {
-            text.replace_range(at + 7..at + 18, "use self::");
-        }
+        let text = text.replace("\n    use super::", "\n    use self::");
         for statement in text.split(';') {
-            let Some((before, tree)) = statement.rsplit_once("use ") else {
+            // The last line that begins so: what comes before belongs to another item.
+            let starts = |line: &&str| {
+                let line = line.trim_start();
+                line.starts_with("use ") || line.starts_with("pub") && line.contains(" use ")
+            };
+            let Some(line) = statement.lines().rfind(starts) else {
                 continue;
             };
-            let is_passed_on = before
-                .trim_end()
-                .rsplit('\n')
-                .next()
-                .unwrap()
-                .trim()
-                .starts_with("pub");
+            let is_passed_on = line.trim_start().starts_with("pub");
+            let at = statement.rfind(line).unwrap();
+            let tree = statement[at..].split_once("use ").unwrap().1;
             for path in paths(tree) {
                 let Some((from, name)) =
                     place(module, &path.replace(char::is_whitespace, ""), files)

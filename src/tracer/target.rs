@@ -1,7 +1,7 @@
 //! Where rows go.
 
 use super::decision::Decision;
-use super::rows::Memory;
+use super::scanline::RowHistory;
 
 /// Some rows, and where they go.
 pub(super) struct Target<'t> {
@@ -9,7 +9,7 @@ pub(super) struct Target<'t> {
     pub(super) size: u32,
     pub(super) samples: &'t mut [f32],
     pub(super) decisions: Option<&'t mut [Decision]>,
-    pub(super) memory: Option<&'t mut [Memory]>,
+    pub(super) memory: Option<&'t mut [RowHistory]>,
 }
 
 impl<'t> Target<'t> {

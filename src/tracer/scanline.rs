@@ -1,0 +1,269 @@
+//! The scan-line tracer: a frame, row by row, from the left to the right.
+//!
+//! Most pixels show what their left neighbour shows. So a pixel is not asked what it shows: it is found where
+//! *edges* cross its row, and between two crossings, in a *span*, all pixels show the same.
+//!
+//! ```text
+//!     frame → edge table → crossings of 8 rows → active edges → spans → what is visible → samples
+//!     prepare/  edges/table    edges/region        active       active     visibility/   shade/, write/
+//!
+//!     one row:
+//!               edge    edge         edge         edge      edge            edge
+//!                 |       |            |            |         |               |
+//!      background | floor | its shadow | sphere     | sphere  | floor, mirror | floor
+//!                 |       |            | in light   | in dark | image         |
+//!        fill       fill    fill         shade        fill      fill            fill
+//! ```
+//!
+//! - `prepare/` makes a frame: solids and surface, and the edges and paints that they bring.
+//! - `edges/` holds the borders on the screen at which a row may change what it shows. Eye rays are parallel, and so
+//!   are rays to the light: every silhouette, edge of a face, outline of a shadow or of a mirror image is a straight
+//!   line or an ellipse, and where it crosses a row is a root, known within a bound. So the *possible* columns of a
+//!   region and its *certain* ones may differ: what lies between them is asked pixel by pixel.
+//! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the next row, where
+//!   mostly nothing but places has changed.
+//! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is in front by a
+//!   plane that keeps solids apart (`separation`) or by a test of depth (`depth`), and what of it is seen (`resolve`).
+//! - `shade/` computes the pixels of spheres, many at a time: within bounds for the kernels that are right
+//!   (`certified`), or without (`unchecked`). Columns turned away from the light are found as a span, too (`spans`).
+//! - `write/` fills spans of one paint, and leaves out what stands there from the frame before (`history`).
+//!
+//! All of this is f64 with proven bounds. A pixel that they leave in doubt is asked by itself (`ladder.rs`), by the
+//! formulas that everything here is derived from: `pixel.rs` is the definition, this is how it is computed fast.
+//!
+//! What not to try again: closures given to `map` inside of vector code, which are compiled without the vector
+//! instructions around them; 16 rows at once; shading the runs of a sphere together at the end of some rows. What each
+//! step of the way brought is told by the commits.
+
+mod active;
+#[cfg(test)]
+mod bounds;
+mod edges;
+mod grid;
+mod precision;
+mod prepare;
+mod rounding;
+mod shade;
+mod span;
+mod visibility;
+mod write;
+
+use std::ops::Range;
+
+use fearless_simd::Level;
+
+use super::arena::Arena;
+use super::decision::Decision;
+use super::in_doubt::InDoubt;
+use super::ladder::Lines;
+use super::pixel::quadrant;
+use super::progress::Progress;
+use crate::stage::Stage;
+use active::ActiveEdges;
+use edges::table::{EdgeTable, Edges};
+pub(super) use grid::ROWS;
+use grid::{Columns, Grid};
+pub(super) use precision::Precision;
+use prepare::builder::Builder;
+use prepare::floor::Floor;
+use prepare::solids::{Body, Solids};
+use shade::certified::Shading;
+use shade::spans::SpanCache;
+use visibility::coverage::Coverage;
+use visibility::visible::{DepthTests, Shown, Visible};
+pub(super) use write::history::RowHistory;
+use write::paint::{AllPaints, PaintNumber, Paints};
+use write::row::Row;
+
+/// A frame, ready to be traced row by row.
+pub(super) struct RowTracer<'f, P> {
+    /// Asked for what is in doubt.
+    pixels: &'f P,
+    grid: Grid,
+    level: Level,
+    edges: EdgeTable<'f>,
+    direct: Solids<'f>,
+    floor: Option<Floor<'f>>,
+    paints: AllPaints<'f>,
+    /// How many spheres are shaded.
+    balls: usize,
+    background: PaintNumber,
+    /// The picture of code 2-1, where that is the stage.
+    quadrants: Option<[PaintNumber; 4]>,
+    precision: Precision,
+}
+
+/// What the tracing of a row needs, kept for the next.
+#[derive(Default)]
+pub(super) struct Scratch {
+    active: ActiveEdges,
+    plan: DepthTests,
+    settled: Vec<(Columns, Shown)>,
+    shade: Shade,
+}
+
+/// What the shading of spheres needs, kept for the next.
+#[derive(Default)]
+struct Shade {
+    cache: SpanCache,
+    shading: Shading,
+}
+
+impl<'f, P: Lines> RowTracer<'f, P> {
+    /// The frame that `pixels` are of.
+    pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
+        let arena = &arena.frame;
+        let picture = pixels.bounded();
+        let grid = Grid::new(picture.size);
+        let color = |decision| pixels.color(decision);
+        let mut parts = Builder {
+            grid,
+            arena,
+            edges: Edges::new(arena),
+            paints: Paints::new(&color, arena),
+            balls: 0,
+        };
+        let is_quadrants = picture.stage == Stage::Image;
+        let background = parts.paints.of(Decision::Background);
+        let floor = picture.floor.as_ref();
+        let floor = floor.map(|floor| Floor::new(picture, floor, &mut parts));
+        let direct = Solids::new(picture, &picture.view, false, &mut parts);
+        let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
+        let quadrants = is_quadrants.then(|| [0, 1, 2, 3].map(quadrant));
+        RowTracer {
+            pixels,
+            grid,
+            level,
+            edges: parts.edges.all(),
+            paints: parts.paints.all(),
+            balls: parts.balls,
+            direct,
+            floor,
+            background,
+            quadrants,
+            precision,
+        }
+    }
+
+    /// What tracing rows of this frame needs.
+    pub(super) fn begin(&self, scratch: &mut Scratch) {
+        scratch.active.begin(&self.edges, self.grid);
+        scratch.plan.clear();
+        scratch.shade.cache.begin(self.balls);
+    }
+
+    /// Traces neighbouring rows into their samples, and their decisions where they are asked for. How many pixels double-doubles and
+    /// arbitrary precision had to settle. `scratch` is prepared for the frame. With a `memory` of the rows, which holds for `samples`, only
+    /// what differs is written.
+    pub(super) fn trace(
+        &self,
+        rows: Range<u32>,
+        samples: &mut [f32],
+        decisions: Option<&mut [Decision]>,
+        history: Option<&mut [RowHistory]>,
+        scratch: &mut Scratch,
+        progress: &Progress,
+    ) -> InDoubt {
+        let mut row = Row {
+            level: self.level,
+            precision: self.precision,
+            grid: self.grid,
+            first: rows.start,
+            number: rows.start,
+            y: 0.0,
+            samples,
+            decisions,
+            history,
+            pending: None,
+            in_doubt: InDoubt::default(),
+        };
+        let mut traced = 0;
+        for number in rows {
+            row.number = number;
+            row.y = self.grid.place(number);
+            match &self.quadrants {
+                Some(quadrants) => self.trace_quadrants(&mut row, quadrants),
+                None => self.trace_row(&mut row, scratch),
+            }
+            row.finish();
+            traced += 1;
+            if traced == ROWS as u32 {
+                progress.add(std::mem::take(&mut traced));
+            }
+        }
+        progress.add(traced);
+        row.finish_all()
+    }
+
+    /// Code 2-1, which knows two kinds of column.
+    fn trace_quadrants<'r>(&'r self, row: &mut Row<'r>, quadrants: &[PaintNumber; 4]) {
+        let size = self.grid.size;
+        let middle = (size / 2 + 1).min(size);
+        for columns in [(0, middle), (middle, size)] {
+            if columns.0 < columns.1 {
+                let paint = quadrants[usize::from(quadrant(columns.0, row.number, size))];
+                row.fill(columns, &self.paints[paint]);
+            }
+        }
+    }
+
+    fn trace_row<'r>(&'r self, row: &mut Row<'r>, scratch: &mut Scratch) {
+        let grid = self.grid;
+        let Scratch {
+            active,
+            plan,
+            settled,
+            shade,
+        } = scratch;
+        if plan.is_full() {
+            plan.clear();
+            active.forget();
+        }
+        let look = |column: &Coverage| self.seen(column, plan);
+        active.enter(row.number, &self.edges, self.level, grid, look);
+        let mut from = 0;
+        for part in 0..active.len() {
+            let (to, seen) = active.part(part, row.number);
+            match seen {
+                // A part that other rows have.
+                _ if from == to => {}
+                Visible::Only(shows) => self.write(row, (from, to), shows, shade),
+                Visible::First(_) => {
+                    self.settle(plan, seen, row.y, (from, to), settled);
+                    for (columns, shows) in settled.drain(..) {
+                        self.write(row, columns, shows, shade);
+                    }
+                }
+            }
+            from = to;
+        }
+    }
+
+    /// The solids, or those in the mirror. Without a mirror nothing asks for these.
+    fn solids(&self, mirrored: bool) -> &Solids<'f> {
+        let in_mirror = self
+            .floor
+            .as_ref()
+            .and_then(|floor| floor.mirrored.as_ref());
+        in_mirror.filter(|_| mirrored).unwrap_or(&self.direct)
+    }
+
+    /// Columns that all show the same.
+    fn write<'r>(&'r self, row: &mut Row<'r>, columns: Columns, shows: Shown, shade: &mut Shade) {
+        match shows {
+            Shown::Paint(paint) => row.fill(columns, &self.paints[paint]),
+            Shown::Sphere { mirrored, solid } => {
+                if let Body::Sphere(ball) = &self.solids(mirrored).solids[solid as usize].body {
+                    let paint = &self.paints[ball.in_shadow];
+                    let Shade { cache, shading } = shade;
+                    let chord = cache.of(ball, row.number, self.level, self.grid);
+                    row.shade(columns, ball, &chord, paint, shading);
+                    if !shading.doubts.is_empty() {
+                        row.ask(shading.doubts.drain(..), self.pixels);
+                    }
+                }
+            }
+            Shown::Unknown => row.ask(columns.0..columns.1, self.pixels),
+        }
+    }
+}

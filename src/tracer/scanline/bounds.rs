@@ -1,0 +1,315 @@
+//! The bounds on what the pixels of spheres are shaded with, held against double-doubles: no error is larger than its bound, and no bound
+//! is out of all proportion to the errors.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::number::{Bounded, DoubleDouble, Real};
+use crate::scene::Scene;
+use crate::stage::Stage;
+use crate::tracer::arena::Arena;
+use crate::tracer::ladder::{Ladder, Lines, Rung};
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
+use crate::tracer::scanline::shade::certified::{along, ambient, hits, lit, value};
+use crate::tracer::scanline::shade::light::Lighting;
+use crate::tracer::scanline::shade::spans::{BandSpans, SphereSpans};
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+use crate::tracer::sphere::Sphere;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::View;
+
+const SIZE: u32 = 400;
+
+/// The largest error found of some kind, as a part of its bound.
+#[derive(Default)]
+struct Largest {
+    part: f64,
+    count: usize,
+}
+
+impl Largest {
+    /// What f64 `computed` with this bound.
+    fn note(&mut self, truth: DoubleDouble, computed: f64, bound: f64) {
+        let error = apart(truth, computed).abs();
+        assert!(error <= bound, "{error:e} is more than {bound:e}");
+        self.count += 1;
+        if bound > 0.0 && bound.is_finite() {
+            self.part = self.part.max(error / bound);
+        }
+    }
+
+    /// What f64 knows to lie between two numbers.
+    fn note_between(&mut self, truth: DoubleDouble, lower: f64, upper: f64) {
+        assert!(
+            apart(truth, lower) >= 0.0 && apart(truth, upper) <= 0.0,
+            "{:e} is not within {lower:e} to {upper:e}",
+            truth.to_f64()
+        );
+        self.count += 1;
+        let half = (upper - lower) / 2.0;
+        if half > 0.0 && half.is_finite() {
+            self.part = self.part.max(apart(truth, lower + half).abs() / half);
+        }
+    }
+
+    /// A bound adds up what rarely meets, and is that of the worst pixel in a zone.
+    fn expect(&self, what: &str) {
+        assert!(self.count > 1000, "{what}: only {} tried", self.count);
+        assert!(
+            self.part > 1e-3,
+            "{what}: no error is more than {:e} of its bound",
+            self.part
+        );
+    }
+}
+
+fn apart(truth: DoubleDouble, computed: f64) -> f64 {
+    (truth - DoubleDouble::exact(computed)).to_f64()
+}
+
+#[derive(Default)]
+struct Found {
+    light: Largest,
+    /// Channels without a highlight to speak of, and with one.
+    dull: Largest,
+    highlight: Largest,
+    /// The forms that tell shadows.
+    forms: Largest,
+    cache: Chorded,
+}
+
+/// Pixels that are hit deep enough to be shaded.
+#[derive(Default)]
+struct Chorded {
+    all: usize,
+    /// Those that a row says to be known, of these those that it says to face the light or not, and those it says may have a highlight.
+    known: usize,
+    settled: usize,
+    bright: usize,
+    /// Those that have one.
+    highlight: usize,
+}
+
+impl Chorded {
+    /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no highlight to see.
+    fn note(
+        &mut self,
+        chord: &SphereSpans,
+        column: u32,
+        light: f64,
+        halfway: Option<f64>,
+        least: f64,
+    ) {
+        let is_in = |columns: Columns| columns.0 <= column && column < columns.1;
+        self.all += 1;
+        if !is_in(chord.known) {
+            return;
+        }
+        self.known += 1;
+        if let Some((inside, inside_faces)) = chord.facing {
+            self.settled += 1;
+            // As far as a double-double tells.
+            if light.abs() > 1e-25 {
+                let faces = is_in(inside) == inside_faces;
+                assert_eq!(faces, light > 0.0, "column {column}: n·l = {light:e}");
+            }
+        }
+        self.bright += usize::from(is_in(chord.bright));
+        if halfway.is_some_and(|halfway| halfway > least) {
+            self.highlight += 1;
+            assert!(is_in(chord.bright), "column {column}: n·h = {halfway:?}");
+        }
+    }
+
+    /// Few pixels are left for others to ask.
+    fn expect(&self) {
+        assert!(self.highlight > 1000 && self.settled > 1000);
+        let missed = [self.all - self.known, self.known - self.settled];
+        assert!(
+            missed.iter().all(|&missed| missed < self.all / 50),
+            "{missed:?}"
+        );
+        assert!(
+            self.bright < 2 * self.highlight,
+            "{} of {}",
+            self.bright,
+            self.highlight
+        );
+    }
+}
+
+/// A sphere as rows shade it, and what its pixels are in truth.
+struct Case<'c> {
+    picture: &'c Picture<'c, DoubleDouble>,
+    view: &'c View<'c, DoubleDouble>,
+    sphere: &'c Sphere<DoubleDouble>,
+    color: Vector<DoubleDouble>,
+    ball: RowSphere,
+    grid: Grid,
+    /// Another sphere's centre, and the forms that tell whether that is between a pixel and the light.
+    other: Vector<DoubleDouble>,
+    forms: [LinearForm; 4],
+}
+
+impl Case<'_> {
+    #[inline(always)]
+    fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
+        let ball = &self.ball;
+        let m = ball.off.at(self.grid.place(row));
+        let light = along(simd, &ball.light, m);
+        let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
+        let mut cache = BandSpans::NONE;
+        cache.find(simd, ball, below, self.grid);
+        let chord = cache.row(within);
+        for first in (0..SIZE).step_by(S::f64s::LEN) {
+            let x = self.grid.place(first);
+            let hits = hits(simd, ball, m, x);
+            let facing = value::<S>(&light, hits.q, hits.s);
+            let [deep, shallow] = ball
+                .errors
+                .map(|error| lit(simd, ball, m, x, facing, &ambient(simd, ball, error), true));
+            let forms = self
+                .forms
+                .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
+            for lane in 0..S::f64s::LEN {
+                let q = hits.q.as_slice()[lane];
+                let squared = ball.squared_radius - m * m - q * q;
+                if squared < ball.least[1] {
+                    continue;
+                }
+                let [lower, upper] = if squared < ball.least[0] {
+                    shallow
+                } else {
+                    deep
+                };
+                let line = self.picture.eye_ray(first + lane as u32, row);
+                let hit = self.sphere.first_hit(&line).unwrap().unwrap();
+                let shading = &self.view.shading;
+                let terms = shading.terms(&hit.normal).unwrap();
+                let computed = facing.as_slice()[lane];
+                found
+                    .light
+                    .note(terms.normal_light, computed, ball.light.error);
+
+                let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
+                let facing = terms.normal_light.to_f64();
+                let column = first + lane as u32;
+                found
+                    .cache
+                    .note(&chord, column, facing, halfway, ball.highlight);
+
+                let (from, l) = (hit.point - self.other, shading.to_light.vector);
+                let moment = from.cross(l);
+                let truth = [moment.x, moment.y, moment.z, -from.dot(l)];
+                for (i, truth) in truth.into_iter().enumerate() {
+                    let computed = forms[i].as_slice()[lane];
+                    found.forms.note(truth, computed, self.forms[i].error);
+                }
+
+                let light = shading.ambient() + terms.diffuse + terms.specular;
+                let (color, specular) = (self.color.times(light), self.color.times(terms.specular));
+                let truth = [color.x, color.y, color.z];
+                let bright = [specular.x, specular.y, specular.z].map(Real::to_f64);
+                for (i, truth) in truth.into_iter().enumerate() {
+                    let channels = if bright[i] > 1e-3 {
+                        &mut found.highlight
+                    } else {
+                        &mut found.dull
+                    };
+                    let sample = 3 * lane + i;
+                    let (vector, place) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
+                    channels.note_between(
+                        truth,
+                        lower[vector].as_slice()[place],
+                        upper[vector].as_slice()[place],
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A picture, its view or that in the mirror, and what colours are multiplied with in that.
+type Seen<'s, R> = (&'s Picture<'s, R>, &'s View<'s, R>, R);
+
+/// The spheres of a view, as f64 with bounds knows it, and in truth.
+fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &mut Found) {
+    let grid = Grid::new(SIZE);
+    let (view, true_view) = (known.1, truth.1);
+    for (index, sphere) in view.spheres.iter().enumerate() {
+        let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
+        let color = known.0.solid_color(index) * known.2;
+        let lighting = Lighting::new(&view.shading);
+        let ball = RowSphere::new(sphere, &outline, &lighting, color, true);
+        let other = (index + 1) % view.spheres.len();
+        let to_light = &view.shading.to_light;
+        let beside = ball.beside(&lighting);
+        let ([x, y, z], before) = ball.around(view.spheres[other].center, to_light, &beside);
+        let case = Case {
+            picture: truth.0,
+            view: true_view,
+            sphere: &true_view.spheres[index],
+            color: truth.0.solid_color(index) * truth.2,
+            ball,
+            grid,
+            other: true_view.spheres[other].center,
+            forms: [x, y, z, before],
+        };
+        for row in (0..SIZE).step_by(3) {
+            // With multiplications and additions at once, if there are any, and without.
+            for level in [Level::new(), Level::baseline()] {
+                dispatch!(level, simd => case.check(simd, row, found));
+            }
+        }
+    }
+}
+
+fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
+    let arena = Arena::default();
+    let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Double, &arena);
+    let truth = ladder.picture::<DoubleDouble>(&&arena.frame);
+    let (known, truth) = (ladder.bounded(), &truth);
+    let one = (Bounded::exact(1.0), DoubleDouble::exact(1.0));
+    check_view(
+        (known, &known.view, one.0),
+        (truth, &truth.view, one.1),
+        found,
+    );
+    let floors = known.floor.as_ref().zip(truth.floor.as_ref());
+    if let Some((Some(a), Some(b))) = floors.map(|(a, b)| (&a.mirror, &b.mirror)) {
+        check_view(
+            (known, &a.view, a.reflectance),
+            (truth, &b.view, b.reflectance),
+            found,
+        );
+    }
+}
+
+#[test]
+fn every_error_is_within_its_bound() {
+    let mut found = Found::default();
+    for text in [
+        "",
+        include_str!("../../../tests/scenes/highlights.toml"),
+        include_str!("../../../tests/scenes/exponent_million.toml"),
+        include_str!("../../../tests/scenes/far_spheres.toml"),
+        include_str!("../../../tests/scenes/wide_light.toml"),
+    ] {
+        let scene = match text {
+            "" => Scene::builtin(),
+            text => Scene::from_toml(text).unwrap(),
+        };
+        for alpha in [0.0, 0.7, 2.5, -1e9] {
+            check_frame(&scene, alpha, &mut found);
+        }
+    }
+    found.light.expect("n·l");
+    found.forms.expect("other linear forms");
+    found.dull.expect("channels");
+    found.highlight.expect("channels with a highlight");
+    found.cache.expect();
+}

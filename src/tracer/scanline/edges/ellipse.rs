@@ -1,0 +1,244 @@
+//! Pixels within an ellipse: a sphere's outline, or the shadow of one.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::number::{Bounded, Real};
+use crate::tracer::line::Direction;
+use crate::tracer::scanline::edges::enclosure::{NOWHERE, RunEnclosure};
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::grid::{Grid, in_columns};
+use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::vector::Vector;
+
+/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
+/// chord in every row.
+pub(crate) struct Ellipse {
+    /// The middle of the chord at Y = 0, and how it moves with Y.
+    center: (f64, f64),
+    pub(crate) off: RowOffset,
+    pub(crate) squared_radius: f64,
+    /// Beyond this |m| no row is crossed.
+    limit: f64,
+    /// A bound on the error of m, and of half the chord, squared.
+    pub(crate) off_error: f64,
+    pub(crate) chord_error: f64,
+    /// A bound on the error of an end of the chord in columns, apart from that.
+    slack: f64,
+    /// Whether all of these are finite; otherwise nothing is known.
+    is_bounded: bool,
+}
+
+/// m as a function of Y: `slope` · (Y − `zero`).
+#[derive(Clone, Copy)]
+pub(crate) struct RowOffset {
+    slope: f64,
+    zero: f64,
+}
+
+impl RowOffset {
+    /// m of the row at Y.
+    pub(crate) fn at(self, y: f64) -> f64 {
+        self.slope * (y - self.zero)
+    }
+
+    /// The same of as many rows as there are lanes.
+    #[inline(always)]
+    pub(crate) fn of_rows<S: Simd>(self, y: S::f64s) -> S::f64s {
+        (y - self.zero) * self.slope
+    }
+}
+
+/// Lines in one direction from the points of a sheet: what all spheres that they meet have in common.
+pub(crate) struct Lines<'s> {
+    plane: &'s PixelPlane,
+    direction: Direction<Bounded>,
+    /// What a column adds to the moment of a line, and the length of that, squared.
+    per_column: Vector<Bounded>,
+    speed: Bounded,
+    /// The way of the moment, of length 1, where it is shortest in a row.
+    across: Vector<Bounded>,
+    /// How the middle of the chord, and m, go with Y.
+    middle_per_row: Bounded,
+    off_per_row: Bounded,
+}
+
+impl<'s> Lines<'s> {
+    pub(crate) fn new(plane: &'s PixelPlane, direction: Direction<Bounded>) -> Self {
+        let l = direction.vector;
+        let per_column = plane.per_column.cross(l);
+        let per_row = plane.per_row.cross(l);
+        let speed = per_column.squared_length();
+        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
+        let across = l.cross(per_column);
+        let across = across.divided_by(across.length() * speed.sqrt());
+        Lines {
+            plane,
+            direction,
+            per_column,
+            speed,
+            across,
+            middle_per_row: -(per_row.dot(per_column) / speed),
+            off_per_row: per_row.dot(across),
+        }
+    }
+
+    /// The pixels from whose points they meet a sphere: |(p − c) × l|² ≤ |l|² R².
+    pub(crate) fn meet(&self, (center, radius): (Vector<Bounded>, Bounded), grid: Grid) -> Ellipse {
+        let moment = (self.plane.origin - center).cross(self.direction.vector);
+        let middle = -(moment.dot(self.per_column) / self.speed);
+        Ellipse::new(
+            (middle, self.middle_per_row),
+            (moment.dot(self.across), self.off_per_row),
+            self.direction.squared_length * radius.squared() / self.speed,
+            grid,
+        )
+    }
+}
+
+impl Ellipse {
+    fn new(
+        center: (Bounded, Bounded),
+        off: (Bounded, Bounded),
+        squared_radius: Bounded,
+        grid: Grid,
+    ) -> Ellipse {
+        let reach = grid.reach;
+        let (zero, slope) = (-(off.0 / off.1), off.1);
+        // A linear function of Y in f64: its coefficients' errors, and two roundings.
+        let error = |(a, b): (Bounded, Bounded)| {
+            (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
+                * MORE
+        };
+        let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
+        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one rounding. The product rounds too.
+        let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
+        let shift = zero.error() + U * away;
+        let off_error =
+            (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
+        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the error says, and farther away
+        // because the slope is known to a quarter. Otherwise nothing is known.
+        let known = slope.error() < slope.value().abs() / 4.0;
+        let limit = if known {
+            (radius + off_error) * MORE
+        } else {
+            f64::INFINITY
+        };
+        // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
+        let chord_error = (squared_radius.error()
+            + (2.0 * limit + off_error) * off_error
+            + 2.0 * U * (limit * limit + squared_radius.value().abs()))
+            * MORE;
+        // The chord's half is at most the radius. Its root, the sum with the middle, a third of it and the sum with N/2 round
+        // by less than u of |middle| + radius + N each.
+        let middle = center.0.value().abs() + center.1.value().abs() * reach;
+        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
+        let all = [
+            center.0.value(),
+            center.1.value(),
+            slope.value(),
+            zero.value(),
+            squared_radius.value(),
+            limit,
+            chord_error,
+            slack,
+        ];
+        Ellipse {
+            is_bounded: all.iter().all(|x| x.is_finite()),
+            center: (center.0.value(), center.1.value()),
+            off: RowOffset {
+                slope: slope.value(),
+                zero: zero.value(),
+            },
+            squared_radius: squared_radius.value(),
+            limit,
+            off_error,
+            chord_error,
+            slack,
+        }
+    }
+
+    /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10 (Y − c_y) − 3 (Z − c_z))/√109.
+    pub(crate) fn outline(center: Vector<Bounded>, radius: Bounded, grid: Grid) -> Ellipse {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let z = Bounded::exact(grid.reach) - center.z;
+        Ellipse::new(
+            (center.x, Bounded::exact(0.0)),
+            ((-(ten * center.y) - three * z) / root, ten / root),
+            radius.squared(),
+            grid,
+        )
+    }
+
+    /// What it has of as many rows as there are lanes.
+    #[inline(always)]
+    pub(crate) fn enclose<S: Simd>(
+        &self,
+        simd: S,
+        y: S::f64s,
+        grid: Grid,
+    ) -> RunEnclosure<S::f64s> {
+        let zero = S::f64s::splat(simd, 0.0);
+        let none = S::f64s::splat(simd, NOWHERE);
+        if !self.is_bounded {
+            let all = S::f64s::splat(simd, f64::from(grid.size));
+            return RunEnclosure {
+                possible: [zero, all],
+                certain: [zero, none],
+            };
+        }
+        let m = self.off.of_rows::<S>(y);
+        let squared = -(m * m) + self.squared_radius;
+        let (most, least) = (squared + self.chord_error, squared - self.chord_error);
+        let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
+        let is_certain = is_met & least.simd_gt(zero);
+        let middle = y * self.center.1 + self.center.0;
+        // No NaN comes here: m is infinite at worst, and then the row is beyond.
+        let half = most.max(zero).sqrt();
+        let from = in_columns::<S>(grid, middle - half) - self.slack;
+        let to = in_columns::<S>(grid, middle + half) + self.slack;
+        let possible = [from, is_met.select(to, none)];
+        let half = least.max(zero).sqrt();
+        let from = in_columns::<S>(grid, middle - half) + self.slack;
+        let to = in_columns::<S>(grid, middle + half) - self.slack;
+        let certain = [from, is_certain.select(to, none)];
+        RunEnclosure { possible, certain }
+    }
+
+    /// The same of the row at Y.
+    #[inline(always)]
+    fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> RunEnclosure<f64> {
+        let y = S::f64s::splat(simd, y);
+        let RunEnclosure { possible, certain } = self.enclose(simd, y, grid);
+        RunEnclosure {
+            possible: possible.map(|place| place.as_slice()[0]),
+            certain: certain.map(|place| place.as_slice()[0]),
+        }
+    }
+
+    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
+        let RunEnclosure { possible, certain } =
+            dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
+        let column = grid.half + x / 3.0;
+        if column < possible[0] || column > possible[1] {
+            return Some(false);
+        }
+        (certain[0] <= column && column <= certain[1]).then_some(true)
+    }
+
+    /// The rows that it can cross.
+    pub(crate) fn rows(&self, grid: Grid) -> (u32, u32) {
+        let ends = [-self.limit, self.limit].map(|m| self.off.zero + m / self.off.slope);
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // A row more on either side is far more than rounding takes.
+        let place = |y: f64| grid.half + y / 3.0;
+        let rows = (grid.ceil(place(low) - 1.0), grid.count(place(high) + 1.0));
+        if low.is_finite() && high.is_finite() {
+            rows
+        } else {
+            (0, grid.size)
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Pixels on one side of a straight border.
+
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+use crate::number::{Bounded, Real};
+use crate::tracer::scanline::edges::enclosure::{NOWHERE, RunEnclosure};
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::tetrahedron::HalfSpace;
+
+/// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
+pub(crate) struct HalfPlane {
+    constant: Bounded,
+    column: Bounded,
+    row: Bounded,
+    closed: bool,
+    crossing: Crossing,
+}
+
+/// How rows cross a border.
+enum Crossing {
+    /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is to the right of it, or to the left.
+    Right(Root),
+    Left(Root),
+    /// Not to be told from not at all. A bound on the error of the sum but for the part of Y.
+    Never {
+        error: f64,
+    },
+}
+
+struct Root {
+    at: f64,
+    per_row: f64,
+    slack: f64,
+}
+
+impl HalfPlane {
+    pub(crate) fn new(
+        constant: Bounded,
+        column: Bounded,
+        row: Bounded,
+        closed: bool,
+        grid: Grid,
+    ) -> Self {
+        let reach = grid.reach;
+        // The errors of the coefficients.
+        let carried = constant.error() + (column.error() + row.error()) * reach;
+        let magnitude = constant.value().abs() + row.value().abs() * reach;
+        let across = column.value().abs() * reach;
+        // In columns the root is N/2 − (constant + row · Y)/(3 · column). The errors move it by that part of theirs. The inverse of
+        // 3 · column rounds by 2u, `at` and `per_row` by 2u more, the product with Y and the sum with it by u each: less than 8u of the
+        // terms' magnitudes, and of N/2 and the root, which is below 3N where it matters.
+        let inverse = 1.0 / (3.0 * column.value());
+        let root = Root {
+            at: grid.half - constant.value() * inverse,
+            per_row: -(row.value() * inverse),
+            slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
+                + 16.0 * U * 3.0 * f64::from(grid.size))
+                * MORE,
+        };
+        let is_known = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
+        // The sum rounds by less than 2u of its terms twice.
+        let error = (carried + 4.0 * U * magnitude) * MORE;
+        let crossing = match inverse > 0.0 {
+            _ if !is_known || across <= error => Crossing::Never {
+                error: (error + across) * MORE,
+            },
+            true => Crossing::Right(root),
+            false => Crossing::Left(root),
+        };
+        HalfPlane {
+            constant,
+            column,
+            row,
+            closed,
+            crossing,
+        }
+    }
+
+    /// The pixels whose points on the sheet lie in a half-space.
+    pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
+        let n = half_space.normal;
+        if half_space.border.is_some() && half_space.border == plane.plane {
+            // All of them lie on its border.
+            let zero = Bounded::exact(0.0);
+            return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
+        }
+        HalfPlane::new(
+            n.dot(plane.origin - half_space.at),
+            n.dot(plane.per_column),
+            n.dot(plane.per_row),
+            half_space.closed,
+            grid,
+        )
+    }
+
+    /// Whether the sum is known to be in it at X, Y; `None` where it is not known.
+    fn decide(&self, x: f64, y: f64) -> Option<bool> {
+        let sum = self.constant + self.row * Bounded::exact(y) + self.column * Bounded::exact(x);
+        let sign = sum.sign().ok()?;
+        Some(sign.is_gt() || (self.closed && sign.is_eq()))
+    }
+
+    /// The same, asked only where its border may be.
+    pub(crate) fn decide_near(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
+        let (root, rightward) = match &self.crossing {
+            Crossing::Right(root) => (root, true),
+            Crossing::Left(root) => (root, false),
+            Crossing::Never { .. } => return self.decide(x, y),
+        };
+        let beyond = grid.half + x / 3.0 - (y * root.per_row + root.at);
+        if beyond.abs() > root.slack * MORE + U * (beyond.abs() + f64::from(grid.size)) {
+            Some((beyond > 0.0) == rightward)
+        } else {
+            self.decide(x, y)
+        }
+    }
+
+    /// Brings in what it has of as many rows as there are lanes.
+    #[inline(always)]
+    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, reaches: &mut RunEnclosure<S::f64s>) {
+        let RunEnclosure { possible, certain } = reaches;
+        match &self.crossing {
+            Crossing::Right(root) => {
+                let place = y * root.per_row + root.at;
+                possible[0] = possible[0].max(place - root.slack);
+                certain[0] = certain[0].max(place + root.slack);
+            }
+            Crossing::Left(root) => {
+                let place = y * root.per_row + root.at;
+                possible[1] = possible[1].min(place + root.slack);
+                certain[1] = certain[1].min(place - root.slack);
+            }
+            Crossing::Never { error } => {
+                let sum = y * self.row.value() + self.constant.value();
+                let is_in = sum.simd_gt(*error);
+                if !is_in.all_true() {
+                    let mut is_in = is_in.to_bitmask();
+                    let mut is_out = sum.simd_lt(-*error).to_bitmask();
+                    if self.column.is_zero() {
+                        for (lane, &y) in y.as_slice().iter().enumerate() {
+                            match self.decide(0.0, y) {
+                                Some(true) => is_in |= 1 << lane,
+                                Some(false) => is_out |= 1 << lane,
+                                None => {}
+                            }
+                        }
+                    }
+                    let none = S::f64s::splat(simd, NOWHERE);
+                    let is_in = S::mask64s::from_bitmask(simd, is_in);
+                    let is_out = S::mask64s::from_bitmask(simd, is_out);
+                    possible[1] = is_out.select(none, possible[1]);
+                    certain[1] = is_in.select(certain[1], none);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,448 @@
+//! The solids as a frame's rows cross them: seen directly, or in the mirror.
+
+use std::cell::LazyCell;
+use std::ops::Range;
+
+use bumpalo::Bump;
+use bumpalo::collections::Vec as Growing;
+
+use crate::number::{Bounded, Real};
+use crate::scene::{Side, Support};
+use crate::stage::Stage;
+use crate::tracer::arena::collect;
+use crate::tracer::decision::{Decision, Seen};
+use crate::tracer::frame::looking;
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::{Ellipse, Lines, RowOffset};
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::region::Region;
+use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::builder::Builder;
+use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
+use crate::tracer::scanline::shade::light::Lighting;
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::scanline::visibility::separation::Separation;
+use crate::tracer::scanline::write::paint::PaintNumber;
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::View;
+
+/// All solids that take part in a stage.
+pub(crate) struct Solids<'f> {
+    pub(crate) mirrored: bool,
+    pub(crate) solids: &'f [Solid<'f>],
+    /// Which is in front of which.
+    pub(crate) order: Separation<'f>,
+}
+
+/// One of them.
+pub(crate) struct Solid<'f> {
+    pub(crate) side: Side,
+    depth: Depth<'f>,
+    pub(crate) body: Body<'f>,
+}
+
+/// How its pixels are coloured.
+pub(crate) enum Body<'f> {
+    /// All alike.
+    Flat(PaintNumber),
+    Sphere(&'f ShadedSphere<'f>),
+    Facets(&'f [Facet], &'f [Pair]),
+    /// Each is to be asked for.
+    Unknown,
+}
+
+/// A face that eye rays enter.
+pub(crate) struct Facet {
+    pub(crate) lit: PaintNumber,
+    pub(crate) in_shadow: PaintNumber,
+    /// Whether it is in shadow where nothing else throws one.
+    pub(crate) turned_away: bool,
+    /// The borders of the shadows on it.
+    pub(crate) shadows: Range<usize>,
+}
+
+/// Two facets, the first of the lower number, and the border of where eye rays enter that last.
+pub(crate) struct Pair {
+    pub(crate) facets: (usize, usize),
+    pub(crate) first: usize,
+}
+
+/// The parameter at which eye rays enter.
+enum Depth<'f> {
+    /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `shade/sphere.rs`.
+    Sphere {
+        off: RowOffset,
+        squared_radius: f64,
+        center: f64,
+        g: [f64; 2],
+        error: f64,
+        squared_error: f64,
+        support: Support,
+    },
+    /// The largest of some linear functions of X and Y, each with a bound on its error.
+    Facets(&'f [([f64; 3], f64)]),
+}
+
+impl<'f> Solids<'f> {
+    pub(crate) fn new(
+        picture: &Picture<'_, Bounded>,
+        view: &View<'_, Bounded>,
+        mirrored: bool,
+        parts: &mut Builder<'f, '_>,
+    ) -> Self {
+        let (grid, arena) = (parts.grid, parts.arena);
+        let (scene, stage) = (picture.scene, picture.stage);
+        let count = view.spheres.len();
+        // Whether points can be in shadow.
+        let shadows = stage >= Stage::Shadow;
+        let numbers = match stage {
+            Stage::Spheres => 0..count,
+            Stage::Tetrahedron => count..count + view.tetrahedra.len(),
+            _ => 0..count + view.tetrahedra.len(),
+        };
+        let order = Separation::new(view, numbers.clone(), arena);
+        let decision = |solid: usize, face: Option<usize>, in_shadow: bool| {
+            let seen = Seen {
+                solid: solid as u16,
+                face: face.map(|face| face as u8),
+                in_shadow,
+            };
+            if mirrored {
+                Decision::Mirrored(seen)
+            } else {
+                Decision::Solid(seen)
+            }
+        };
+        let mut solids = Growing::with_capacity_in(numbers.len(), arena);
+        let edge = |place: usize, side: Side| match side {
+            _ if !mirrored => Some(Edge::Direct(place)),
+            // Below the surface nothing is mirrored.
+            Side::Below => None,
+            _ => Some(Edge::Mirrored(place)),
+        };
+        let facts = scene.facts();
+        let rising = -scene.light().direction.y;
+        // Whether the surface may stand between a point of a solid and the light.
+        let surface_shades = |solid: usize| {
+            picture.floor.is_some()
+                && !match facts.sides[solid] {
+                    Side::Above => rising > 0.0,
+                    Side::Below => rising < 0.0,
+                    Side::Across => false,
+                }
+        };
+        let reflectance = match &picture.floor {
+            Some(floor) if mirrored => floor.mirror.as_ref().map(|mirror| mirror.reflectance),
+            _ => None,
+        };
+        // In the mirror only what the surface shows matters.
+        let rows = match &picture.floor {
+            Some(floor) if mirrored => floor.extent.rows(grid.size),
+            _ => (0, grid.size),
+        };
+        let lighting = LazyCell::new(|| Lighting::new(&view.shading));
+        if stage != Stage::Tetrahedron {
+            for (index, sphere) in view.spheres.iter().enumerate() {
+                let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
+                let mut paint = |in_shadow| parts.paints.of(decision(index, None, in_shadow));
+                let body = if stage == Stage::Spheres {
+                    Body::Flat(paint(false))
+                } else if surface_shades(index) {
+                    Body::Unknown
+                } else {
+                    let own = picture.solid_color(index);
+                    let own = reflectance.map_or(own, |reflectance| own * reflectance);
+                    let ball = RowSphere::new(sphere, &ellipse, &lighting, own, shadows);
+                    let casters = if shadows {
+                        let casters = &facts.casters[index];
+                        casters_on(&ball, index, view, &lighting, casters, arena)
+                    } else {
+                        &[]
+                    };
+                    parts.balls += 1;
+                    Body::Sphere(arena.alloc(ShadedSphere {
+                        number: parts.balls - 1,
+                        ball,
+                        casters,
+                        lit: decision(index, None, false),
+                        in_shadow: paint(shadows),
+                    }))
+                };
+                let depth = depth_of_sphere(sphere.center, &ellipse, sphere.support, grid);
+                let side = facts.sides[index];
+                if let Some(edge) = edge(solids.len(), side) {
+                    let outline = Region::new(&[], Some(ellipse), grid).within(rows);
+                    parts.edges.add(outline, edge);
+                }
+                solids.push(Solid { side, depth, body });
+            }
+        }
+        if stage != Stage::Spheres {
+            for (index, t) in (count..).zip(view.tetrahedra) {
+                let plane = screen_plane(grid);
+                let plane = |half_space| HalfPlane::of(&half_space, &plane, grid);
+                let (first, end) = view.extents[index].rows(grid.size);
+                let rows = (first.max(rows.0), end.min(rows.1));
+                let planes = collect(arena, t.solid.met(&t.from_eye).map(plane));
+                let outline = Region::new(planes, None, grid);
+                let mut facets = Growing::new_in(arena);
+                let mut depths = Growing::new_in(arena);
+                for face in t.from_eye.entered() {
+                    let (plane, depth) = face_plane(t.solid.plane(face), grid);
+                    depths.push(depth);
+                    let turned_away = shadows && t.solid.turned_away(face);
+                    let casters: &[u16] = if shadows && !turned_away {
+                        &facts.casters[index]
+                    } else {
+                        &[]
+                    };
+                    let casters = casters.iter().copied();
+                    let thrown = shadows_on(&plane, view, casters, |_| false, grid, arena);
+                    let mut paint =
+                        |in_shadow| parts.paints.of(decision(index, Some(face), in_shadow));
+                    facets.push(Facet {
+                        lit: paint(false),
+                        in_shadow: paint(shadows),
+                        turned_away,
+                        shadows: parts.edges.add_details(thrown, rows),
+                    });
+                }
+                let place = |face: usize| t.from_eye.entered().position(|other| other == face);
+                let pairs = t.solid.entered_pairs(&t.from_eye);
+                let pairs = pairs.filter_map(|(i, j, first)| {
+                    let first = Region::new(arena.alloc([plane(first)]), None, grid);
+                    Some(Pair {
+                        facets: (place(i)?, place(j)?),
+                        first: parts.edges.add_details([first], rows).start,
+                    })
+                });
+                let pairs = collect(arena, pairs);
+                let body = if surface_shades(index) {
+                    Body::Unknown
+                } else {
+                    Body::Facets(facets.into_bump_slice(), pairs)
+                };
+                let side = facts.sides[index];
+                if let Some(edge) = edge(solids.len(), side) {
+                    parts.edges.add(outline.within(rows), edge);
+                }
+                solids.push(Solid {
+                    side,
+                    depth: Depth::Facets(depths.into_bump_slice()),
+                    body,
+                });
+            }
+        }
+        Solids {
+            mirrored,
+            solids: solids.into_bump_slice(),
+            order,
+        }
+    }
+}
+
+impl Solid<'_> {
+    /// Bounds on the parameter at which the eye rays at Y, from one X to another, enter it.
+    pub(crate) fn depth(&self, y: f64, ends: [f64; 2]) -> (f64, f64) {
+        match &self.depth {
+            Depth::Sphere {
+                off,
+                squared_radius,
+                center,
+                g,
+                error,
+                squared_error,
+                ..
+            } => {
+                let m = off.at(y);
+                let squared = |q: f64| (squared_radius - m * m) - q * q;
+                let q = ends.map(|x| x - center);
+                let farthest = q[0].abs().max(q[1].abs());
+                let nearest = if q[0] * q[1] <= 0.0 {
+                    0.0
+                } else {
+                    q[0].abs().min(q[1].abs())
+                };
+                let least = (squared(farthest) - squared_error).max(0.0).sqrt();
+                let most = (squared(nearest) + squared_error).max(0.0).sqrt() * MORE;
+                // 1/√109, from below and from above.
+                const ROOT: f64 = 0.095_782_628_522_115_14;
+                let g = (g[0] + g[1] * y) / 109.0;
+                (
+                    g - most * ROOT * MORE - error,
+                    g - least * ROOT / MORE / MORE + error,
+                )
+            }
+            Depth::Facets(functions) => functions.iter().fold(
+                (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                |(low, high), ([constant, column, row], error)| {
+                    let ends = ends.map(|x| constant + column * x + row * y);
+                    (
+                        low.max(ends[0].min(ends[1]) - error),
+                        high.max(ends[0].max(ends[1]) + error),
+                    )
+                },
+            ),
+        }
+    }
+
+    /// Whether both are the same sphere.
+    pub(crate) fn is_same_sphere(&self, other: &Solid<'_>) -> bool {
+        match (&self.depth, &other.depth) {
+            (Depth::Sphere { support: a, .. }, Depth::Sphere { support: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
+fn depth_of_sphere(
+    center: Vector<Bounded>,
+    outline: &Ellipse,
+    support: Support,
+    grid: Grid,
+) -> Depth<'static> {
+    let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+    // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
+    let constant = ten * (Bounded::exact(grid.reach) - center.z) - three * center.y;
+    let magnitude = constant.value().abs() + 3.0 * grid.reach;
+    let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.reach);
+    let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
+    let reach = radius + q;
+    Depth::Sphere {
+        off: outline.off,
+        squared_radius: outline.squared_radius,
+        center: center.x.value(),
+        g: [constant.value(), 3.0],
+        error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
+        squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
+            * MORE,
+        support,
+    }
+}
+
+/// The places of the pixels on the screen, where eye rays begin.
+fn screen_plane(grid: Grid) -> PixelPlane {
+    let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
+    PixelPlane {
+        origin: vector(0.0, 0.0, grid.reach),
+        per_column: vector(1.0, 0.0, 0.0),
+        per_row: vector(0.0, 1.0, 0.0),
+        plane: None,
+    }
+}
+
+/// Where eye rays meet the plane of a face, and at which parameter.
+fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, ([f64; 3], f64)) {
+    let eye = screen_plane(grid);
+    let d = looking::<Bounded>().vector;
+    // t = −n·(o − a)/(n·d), linear in o.
+    let speed = face.normal.dot(d);
+    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / speed);
+    let depths = [
+        depth(eye.origin - face.at),
+        depth(eye.per_column),
+        depth(eye.per_row),
+    ];
+    let magnitudes: f64 = depths
+        .iter()
+        .zip([1.0, grid.reach, grid.reach])
+        .map(|(depth, reach)| depth.value().abs() * reach)
+        .sum();
+    let errors: f64 = depths
+        .iter()
+        .zip([1.0, grid.reach, grid.reach])
+        .map(|(depth, reach)| depth.error() * reach)
+        .sum();
+    let plane = PixelPlane {
+        origin: eye.origin + d * depths[0],
+        per_column: eye.per_column + d * depths[1],
+        per_row: eye.per_row + d * depths[2],
+        plane: face.border,
+    };
+    let error = (errors + 8.0 * U * magnitudes) * MORE;
+    (plane, (depths.map(Bounded::value), error))
+}
+
+/// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead` of all the sheet's pixels it is
+/// not asked whether it is.
+pub(crate) fn shadows_on<'f>(
+    plane: &PixelPlane,
+    view: &View<'_, Bounded>,
+    casters: impl Iterator<Item = u16>,
+    is_ahead: impl Fn(usize) -> bool,
+    grid: Grid,
+    arena: &'f Bump,
+) -> impl Iterator<Item = Region<'f>> {
+    let to_light = view.shading.to_light;
+    let lines = LazyCell::new(move || Lines::new(plane, to_light));
+    let shape = move |caster: u16| {
+        let caster = usize::from(caster);
+        let is_ahead = is_ahead(caster);
+        match view.spheres.get(caster) {
+            Some(sphere) => {
+                let before = (!is_ahead).then(|| HalfSpace {
+                    normal: -to_light.vector,
+                    at: sphere.center,
+                    closed: false,
+                    border: None,
+                });
+                let before = before
+                    .iter()
+                    .map(|half_space| HalfPlane::of(half_space, plane, grid));
+                let ellipse = lines.meet((sphere.center, sphere.radius), grid);
+                Region::new(collect(arena, before), Some(ellipse), grid)
+            }
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
+                let planes = if is_ahead {
+                    collect(arena, t.solid.met(&t.from_light).map(plane))
+                } else {
+                    collect(arena, t.solid.ahead(&t.from_light).map(plane))
+                };
+                Region::new(planes, None, grid)
+            }
+        }
+    };
+    casters.map(shape)
+}
+
+/// What may shade the pixels of a sphere.
+fn casters_on<'f>(
+    ball: &RowSphere,
+    index: usize,
+    view: &View<'_, Bounded>,
+    lighting: &Lighting,
+    casters: &[u16],
+    arena: &'f Bump,
+) -> &'f [Caster<'f>] {
+    let to_light = view.shading.to_light;
+    let own = view.spheres[index].support;
+    let beside = LazyCell::new(|| ball.beside(lighting));
+    let casters = casters.iter().filter_map(|&caster| {
+        let caster = usize::from(caster);
+        match view.spheres.get(caster) {
+            // A ray leaves its own sphere, also where that is listed twice.
+            Some(sphere) if sphere.support == own => None,
+            Some(sphere) => {
+                let (moment, before) = ball.around(sphere.center, &to_light, &beside);
+                let reach = to_light.squared_length * sphere.radius.squared();
+                Some(Caster::Sphere(
+                    arena.alloc(ShadowCylinder::new(before, moment, reach)),
+                ))
+            }
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let ahead = t.solid.ahead(&t.from_light);
+                let forms = ahead.map(|half_space| ball.inside(&half_space, lighting));
+                Some(Caster::Polyhedron(collect(arena, forms)))
+            }
+        }
+    });
+    collect(arena, casters)
+}

@@ -1,0 +1,99 @@
+//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: what the shading of all its spheres has in common.
+
+use crate::number::{Bounded, Real};
+use crate::tracer::scanline::rounding::MORE;
+use crate::tracer::shading::Shading;
+use crate::tracer::vector::Vector;
+
+/// The logarithm of a power that nobody sees: e⁻⁴¹ < 2⁻⁵⁹.
+const CUT: f64 = -41.0;
+
+/// The axes of q, m and s: (1, 0, 0), (0, 10, −3)/√109 and (0, 3, 10)/√109.
+#[derive(Clone, Copy)]
+pub(crate) struct Axes {
+    /// 3/√109 and 10/√109.
+    three: Bounded,
+    ten: Bounded,
+}
+
+impl Axes {
+    fn new() -> Axes {
+        let root = Bounded::exact(109.0).sqrt();
+        let [three, ten] = [3.0, 10.0].map(|part| Bounded::exact(part) / root);
+        Axes { three, ten }
+    }
+
+    /// A vector in these axes.
+    pub(crate) fn of(self, vector: Vector<Bounded>) -> [Bounded; 3] {
+        [
+            vector.x,
+            self.ten * vector.y - self.three * vector.z,
+            self.three * vector.y + self.ten * vector.z,
+        ]
+    }
+}
+
+/// What light does to the spheres of a view.
+pub(crate) struct Lighting {
+    pub(crate) axes: Axes,
+    /// l, of length 1.
+    pub(crate) to_light_unit: [Bounded; 3],
+    /// What n is multiplied with in the components of n × l, and in −n·l, with an l of any length.
+    pub(crate) moment: [[Bounded; 3]; 3],
+    pub(crate) before: [Bounded; 3],
+    /// h, of length 1; `None` where there is no highlight.
+    pub(crate) halfway: Option<[Bounded; 3]>,
+    pub(crate) highlight: Highlight,
+    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with.
+    pub(crate) coefficients: [[Bounded; 3]; 3],
+}
+
+/// Where a highlight can be seen, and how it changes.
+pub(crate) struct Highlight {
+    /// n.
+    pub(crate) exponent: u32,
+    /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
+    pub(crate) least: f64,
+    /// 1 − n·h there.
+    pub(crate) limit: f64,
+    /// A bound on |n − h| where it can be seen.
+    pub(crate) reach: f64,
+    /// |n − h| where it is steepest.
+    pub(crate) steepest: f64,
+    /// 2¹⁻ⁿ.
+    pub(crate) least_power: f64,
+}
+
+impl Lighting {
+    pub(crate) fn new(shading: &Shading<Bounded>) -> Lighting {
+        let axes = Axes::new();
+        let l = shading.to_light.vector;
+        let zero = Bounded::exact(0.0);
+        let moment = [
+            Vector::new(zero, l.z, -l.y),
+            Vector::new(-l.z, zero, l.x),
+            Vector::new(l.y, -l.x, zero),
+        ];
+        let exponent = shading.exponent();
+        let n = f64::from(exponent);
+        // (1 − x)ⁿ ≤ e^−nx.
+        let least = libm::exp(CUT / n);
+        Lighting {
+            axes,
+            to_light_unit: axes.of(shading.to_light_unit()),
+            moment: moment.map(|vector| axes.of(vector)),
+            before: axes.of(-l),
+            halfway: shading.halfway().map(|h| axes.of(h)),
+            highlight: Highlight {
+                exponent,
+                least,
+                limit: -libm::expm1(CUT / n),
+                // 1 − n·h = |n − h|²/2.
+                reach: (2.0 * (1.0 - least)).sqrt() * MORE,
+                steepest: 1.0 / n.sqrt(),
+                least_power: libm::exp2(1.0 - n),
+            },
+            coefficients: shading.coefficients(),
+        }
+    }
+}

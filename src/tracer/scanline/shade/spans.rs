@@ -1,0 +1,328 @@
+//! A sphere in neighbouring rows: which of its pixels can be shaded at once, and which need not be asked where they face.
+//!
+//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave where s is multiplied with what is not negative, and
+//! convex where it is multiplied with what is not positive; its negative is concave then. A concave function is positive between
+//! any two columns in which it is positive. Where it is negative in one column and positive in one to the right of it, it is
+//! negative in all columns to the left of the first: were it not in one of them, it would be no less than the least of that and the
+//! second, between them. And where it is less in a column than in the next, it is less still in all columns before.
+//!
+//! So the columns where it changes sign may be guessed, by the roots of a quadratic equation. The form is asked in few columns beside
+//! these, with its bound as in `shade/sphere.rs`, and what they tell of all others is certain. Where they do not, the row is left unsettled.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, places, put_columns};
+use crate::tracer::scanline::rounding::U;
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+
+/// Rounding moves a place by less than so many columns; where that is not so, what is guessed with it is found to be wrong.
+const NUDGE: f64 = 1.0 / (1 << 20) as f64;
+
+/// In each of some rows, the columns of a run.
+type Runs = [[u32; ROWS]; 2];
+
+/// What is known of a sphere's pixels in some rows.
+#[derive(Clone)]
+pub(crate) struct BandSpans {
+    /// Those that are hit deep enough inside the outline for f64 to say anything.
+    known: Runs,
+    /// Those in the innermost zone.
+    deep: Runs,
+    facing: Arcs,
+    /// Those outside of which there is certainly no highlight.
+    bright: Runs,
+    /// The casters that may throw a shadow on any of them, by [`bit_of`].
+    shaders: u64,
+}
+
+/// The bit of a caster by its number, which it may have in common with others.
+pub(crate) fn bit_of(caster: usize) -> u64 {
+    1 << (caster % 64)
+}
+
+/// The columns in which a form that is concave or convex is positive.
+#[derive(Clone)]
+struct Arcs {
+    /// Where it is positive, if it is concave; where it is negative, if it is convex.
+    inside: Runs,
+    is_concave: bool,
+    /// Bit by bit, the rows of which this is certain.
+    settled: u64,
+}
+
+/// What is known of a sphere's pixels in a row.
+#[derive(Clone, Copy)]
+pub(crate) struct SphereSpans {
+    pub(crate) known: Columns,
+    pub(crate) deep: Columns,
+    pub(crate) bright: Columns,
+    /// The casters that may throw a shadow on them, by [`bit_of`].
+    pub(crate) shaders: u64,
+    /// The columns in which it faces the light, or those in which it does not; `None` where each is to be asked.
+    pub(crate) facing: Option<(Columns, bool)>,
+}
+
+/// What is known of spheres in the rows that are traced now, found when it is first asked for.
+#[derive(Default)]
+pub(crate) struct SpanCache {
+    cache: Vec<BandSpans>,
+    /// For each, the first of the rows that it is of.
+    first: Vec<Option<u32>>,
+}
+
+impl SpanCache {
+    /// Prepares for so many spheres of a frame.
+    pub(crate) fn begin(&mut self, count: usize) {
+        self.first.clear();
+        self.first.resize(count, None);
+        if self.cache.len() < count {
+            self.cache.resize(count, BandSpans::NONE);
+        }
+    }
+
+    /// A sphere in a row.
+    pub(crate) fn of(
+        &mut self,
+        shaded: &ShadedSphere<'_>,
+        row: u32,
+        level: Level,
+        grid: Grid,
+    ) -> SphereSpans {
+        let (number, ball) = (shaded.number, &shaded.ball);
+        let within = row % ROWS as u32;
+        let first = row - within;
+        if self.first[number] != Some(first) {
+            self.first[number] = Some(first);
+            let cache = &mut self.cache[number];
+            dispatch!(level, simd => cache.find(simd, ball, first, grid));
+            cache.shaders = cache.shaders_of(shaded, first, grid);
+        }
+        self.cache[number].row(within as usize)
+    }
+}
+
+impl BandSpans {
+    pub(crate) const NONE: BandSpans = BandSpans {
+        known: [[0; ROWS]; 2],
+        deep: [[0; ROWS]; 2],
+        facing: Arcs {
+            inside: [[0; ROWS]; 2],
+            is_concave: true,
+            settled: 0,
+        },
+        bright: [[0; ROWS]; 2],
+        shaders: 0,
+    };
+
+    /// In one of the rows.
+    pub(crate) fn row(&self, row: usize) -> SphereSpans {
+        let of = |runs: &Runs| (runs[0][row], runs[1][row]);
+        let Arcs {
+            inside,
+            is_concave,
+            settled,
+        } = &self.facing;
+        SphereSpans {
+            known: of(&self.known),
+            deep: of(&self.deep),
+            bright: of(&self.bright),
+            shaders: self.shaders,
+            facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
+        }
+    }
+
+    /// The casters that may throw a shadow on any of the pixels known.
+    fn shaders_of(&self, shaded: &ShadedSphere<'_>, first: u32, grid: Grid) -> u64 {
+        if shaded.casters.is_empty() {
+            return 0;
+        }
+        let [from, to] = &self.known;
+        let is_met = |row: &usize| from[*row] < to[*row];
+        let (Some(low), Some(high)) = ((0..ROWS).find(is_met), (0..ROWS).rfind(is_met)) else {
+            return 0;
+        };
+        let rows = low..high + 1;
+        let begin = from[rows.clone()].iter().fold(u32::MAX, |a, &b| a.min(b));
+        let end = to[rows].iter().fold(0, |a, &b| a.max(b));
+        let columns = (grid.place(begin), grid.place(end - 1));
+        let row = |row: usize| grid.place(first + row as u32);
+        let stretch = shaded.ball.stretch(columns, (row(low), row(high)));
+        let casters = shaded.casters.iter().enumerate();
+        let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+        near.fold(0, |all, (number, _)| all | bit_of(number))
+    }
+
+    /// Finds all but the casters, of the rows from `first` on.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(&mut self, simd: S, ball: &RowSphere, first: u32, grid: Grid) {
+        self.facing.is_concave = ball.light.is_concave == Some(true);
+        self.facing.settled = 0;
+        self.bright = BandSpans::NONE.bright;
+        for lane in (0..ROWS).step_by(S::f64s::LEN) {
+            let y = places::<S>(simd, lane) + grid.place(first);
+            let m = ball.off.of_rows::<S>(y);
+            let rows = InRows {
+                simd,
+                ball,
+                grid,
+                m,
+                squared: -(m * m) + ball.squared_radius,
+            };
+            let [least_deep, least] = ball.least;
+            let (known, deep) = (rows.chord(least), rows.chord(least_deep));
+            put::<S>(known, &mut self.known, lane);
+            put::<S>(deep, &mut self.deep, lane);
+            if ball.shadows {
+                let (inside, settled) = rows.arc(&ball.light, 0.0, known);
+                put::<S>(inside, &mut self.facing.inside, lane);
+                self.facing.settled |= settled.to_bitmask() << lane;
+            }
+            if let Some(halfway) = &ball.halfway {
+                // |n − h| is no less than the part of it along m.
+                let is_near = (m - halfway.at[1]).abs().simd_le(halfway.reach);
+                if is_near.any_true() {
+                    let (inside, settled) = rows.arc(&halfway.form, ball.highlight, known);
+                    let mut bright = known;
+                    if halfway.form.is_concave == Some(true) {
+                        bright = select::<S>(settled, inside, known);
+                    }
+                    let none = [S::f64s::splat(simd, 0.0); 2];
+                    let bright = select::<S>(is_near, bright, none);
+                    put::<S>(bright, &mut self.bright, lane);
+                }
+            }
+        }
+    }
+}
+
+/// A sphere in as many rows as there are lanes.
+struct InRows<'b, S: Simd> {
+    simd: S,
+    ball: &'b RowSphere,
+    grid: Grid,
+    m: S::f64s,
+    /// R² − m².
+    squared: S::f64s,
+}
+
+/// Where runs begin and end: whole numbers of columns.
+type Ends<V> = [V; 2];
+
+#[inline(always)]
+fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> Ends<S::f64s> {
+    [mask.select(yes[0], no[0]), mask.select(yes[1], no[1])]
+}
+
+#[inline(always)]
+fn put<S: Simd>(ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
+    put_columns::<S>(ends[0], &mut runs[0][lane..]);
+    put_columns::<S>(ends[1], &mut runs[1][lane..]);
+}
+
+// No closures below: see `shade/certified.rs`.
+
+impl<S: Simd> InRows<'_, S> {
+    /// q in a column of each row.
+    #[inline(always)]
+    fn across(&self, column: S::f64s) -> S::f64s {
+        (column - self.grid.half) * 3.0 - self.ball.center
+    }
+
+    /// The columns in which s² is at least `least`, but for some at their ends.
+    #[inline(always)]
+    fn chord(&self, least: f64) -> Ends<S::f64s> {
+        let (zero, size) = (S::f64s::splat(self.simd, 0.0), f64::from(self.grid.size));
+        let half = (self.squared - least).max(zero).sqrt();
+        let middle = S::f64s::splat(self.simd, self.ball.center);
+        let from = (in_columns::<S>(self.grid, middle - half) + NUDGE).ceil();
+        let to = (in_columns::<S>(self.grid, middle + half) - NUDGE).floor() + 1.0;
+        let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
+        // The farther from the middle the less, also as f64 computes it: what is so at both ends is so between them.
+        let (a, b) = (self.across(from), self.across(to - 1.0));
+        let is_deep = (self.squared - a * a).simd_ge(least) & (self.squared - b * b).simd_ge(least);
+        let is_chord = is_deep & from.simd_lt(to);
+        [is_chord.select(from, zero), is_chord.select(to, zero)]
+    }
+
+    /// How much a form is more than `level` in a column of each row, or less if it is convex.
+    #[inline(always)]
+    fn above(&self, form: &LinearForm, level: f64, sign: f64, column: S::f64s) -> S::f64s {
+        let q = self.across(column);
+        let s = (self.squared - q * q).sqrt();
+        (self.m * form.off + form.constant + q * form.across + s * form.out - level) * sign
+    }
+
+    /// Of the columns `known` those in which a form is above `level`, if it is concave, or below, if it is convex; and in which rows
+    /// it certainly is there, and not in the others.
+    #[inline(always)]
+    fn arc(
+        &self,
+        form: &LinearForm,
+        level: f64,
+        known: Ends<S::f64s>,
+    ) -> (Ends<S::f64s>, S::mask64s) {
+        let none = S::mask64s::splat(self.simd, false);
+        let sign = match form.is_concave {
+            Some(true) => 1.0,
+            Some(false) => -1.0,
+            None => return (known, none),
+        };
+        // The form is F = r + a q + o s, with o ≥ 0, and 0 at (r + a q)² = o² s².
+        let (a, o) = (form.across * sign, form.out * sign);
+        let speed = a * a + o * o;
+        let inverse = 1.0 / speed;
+        if !inverse.is_finite() {
+            return (known, none);
+        }
+        let zero = S::f64s::splat(self.simd, 0.0);
+        let one = S::f64s::splat(self.simd, 1.0);
+        let [first, end] = known;
+        let last = end - one;
+        let r = (self.m * form.off + form.constant - level) * sign;
+        let discriminant = self.squared * speed - r * r;
+        let has_roots = discriminant.simd_ge(zero);
+        let root = discriminant.max(zero).sqrt() * o;
+        let middle = -(r * a);
+        let (low, high) = ((middle - root) * inverse, (middle + root) * inverse);
+        // Where r + a q > 0, F is 0 with the other sign of s, and positive at the end of the chord.
+        let from_end = !has_roots | (low * a + r).simd_gt(zero);
+        let to_end = !has_roots | (high * a + r).simd_gt(zero);
+        let (low, high) = (low + self.ball.center, high + self.ball.center);
+        let from = in_columns::<S>(self.grid, low).ceil().max(first);
+        let to = (in_columns::<S>(self.grid, high).floor() + one).min(end);
+        let from = from_end.select(first, from);
+        let to = to_end.select(end, to);
+        let is_none = (!has_roots & r.simd_lt(zero)) | from.simd_ge(to);
+        // It is most at q/s = a/o.
+        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.ball.center;
+        let top = in_columns::<S>(self.grid, top).floor();
+        let top = top.min(last - one).max(first);
+        // The last column before those, the first and the last of them, and the next; or of none, two columns on either side of the top.
+        let columns = [
+            is_none.select(top - one, from - one),
+            is_none.select(top, from),
+            is_none.select(top + one, to - one),
+            is_none.select(top + one + one, to),
+        ];
+        let mut values = [zero; 4];
+        for (value, column) in values.iter_mut().zip(columns) {
+            let column = column.max(first).min(last);
+            *value = self.above(form, level, sign, column);
+        }
+        let [before, begin, finish, after] = values;
+        let error = form.error + 4.0 * U * level.abs();
+        let is_out = before.simd_lt(-error) & after.simd_lt(-error);
+        let is_in = begin.simd_gt(error) & finish.simd_gt(error);
+        let begins = from.simd_le(first) | before.simd_lt(-error);
+        let ends = to.simd_ge(end) | after.simd_lt(-error);
+        let rises = (top - one).simd_le(first) | (begin - before).simd_gt(4.0 * error);
+        let falls = (top + one + one).simd_ge(last) | (finish - after).simd_gt(4.0 * error);
+        let none_in = is_out & begin.simd_lt(-error) & finish.simd_lt(-error) & rises & falls;
+        let settled = (is_none & none_in) | (!is_none & is_in & begins & ends) | first.simd_ge(end);
+        let from = is_none.select(first, from);
+        let to = is_none.select(first, to);
+        ([from, to], settled)
+    }
+}

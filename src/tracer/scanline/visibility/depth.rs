@@ -1,0 +1,93 @@
+//! What is in front where the order of solids depends on the row and the column.
+
+use crate::tracer::ladder::Lines;
+use crate::tracer::scanline::RowTracer;
+use crate::tracer::scanline::grid::Columns;
+use crate::tracer::scanline::visibility::visible::{DepthTest, DepthTests, Shown, Visible};
+
+/// What is in front of all else in some columns.
+enum Front {
+    /// One of the solids in question.
+    Solid(usize),
+    /// The surface, or where that is not met either, the background.
+    Rest,
+    Unknown,
+}
+
+impl<P: Lines> RowTracer<'_, P> {
+    /// What a row shows where it has to decide about that, from the left.
+    pub(crate) fn settle(
+        &self,
+        plan: &DepthTests,
+        seen: Visible,
+        y: f64,
+        columns: Columns,
+        settled: &mut Vec<(Columns, Shown)>,
+    ) {
+        let shows = match seen {
+            Visible::Only(shows) => shows,
+            Visible::First(contest) => {
+                let contest = plan.test(contest);
+                match (self.front(&contest, y, columns), halves(columns)) {
+                    (Front::Solid(place), _) => contest.solids[place].1,
+                    (Front::Rest, _) => {
+                        return self.settle(plan, contest.rest, y, columns, settled);
+                    }
+                    (Front::Unknown, Some(halves)) => {
+                        for half in halves {
+                            self.settle(plan, seen, y, half, settled);
+                        }
+                        return;
+                    }
+                    (Front::Unknown, None) => Shown::Unknown,
+                }
+            }
+        };
+        match settled.last_mut() {
+            Some((before, same)) if *same == shows => before.1 = columns.1,
+            _ => settled.push((columns, shows)),
+        }
+    }
+
+    /// What is in front in all these columns.
+    fn front(&self, contest: &DepthTest<'_>, y: f64, columns: Columns) -> Front {
+        let view = self.solids(contest.mirrored);
+        let surface = self.floor.as_ref().filter(|_| contest.surface);
+        let ends = [columns.0, columns.1 - 1].map(|column| self.grid.place(column));
+        // The candidate is what ends first; it is in front if all others begin behind that.
+        let mut candidate = (
+            Front::Rest,
+            surface.map_or((f64::INFINITY, f64::INFINITY), |floor| floor.depth_at(y)),
+        );
+        let mut others_begin = f64::INFINITY;
+        for (place, &(solid, _)) in contest.solids.iter().enumerate() {
+            let solid = &view.solids[solid];
+            let (front, (begins, ends_first)) = &candidate;
+            // Of a sphere that is listed twice the first is seen.
+            if let Front::Solid(first) = front
+                && view.solids[contest.solids[*first].0].is_same_sphere(solid)
+            {
+                continue;
+            }
+            let (least, most) = solid.depth(y, ends);
+            if most < *ends_first {
+                others_begin = others_begin.min(*begins);
+                candidate = (Front::Solid(place), (least, most));
+            } else {
+                others_begin = others_begin.min(least);
+            }
+        }
+        let (front, (_, most)) = candidate;
+        if most.is_finite() && others_begin > most {
+            front
+        } else {
+            Front::Unknown
+        }
+    }
+}
+
+/// Both halves of some columns, if there are more than one.
+fn halves((from, to): Columns) -> Option<[Columns; 2]> {
+    let middle = from + (to - from) / 2;
+    (to - from > 1).then_some([(from, middle), (middle, to)])
+}

@@ -1,0 +1,129 @@
+//! What is seen in a coverage, once it is known which borders hold it.
+
+use crate::scene::Side;
+use crate::tracer::ladder::Lines;
+use crate::tracer::scanline::RowTracer;
+use crate::tracer::scanline::prepare::floor::Floor;
+use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
+use crate::tracer::scanline::visibility::coverage::Coverage;
+use crate::tracer::scanline::visibility::visible::{DepthTests, Shown, Visible};
+
+impl<P: Lines> RowTracer<'_, P> {
+    /// What is seen in a coverage, and in its neighbours up to the next crossing.
+    pub(crate) fn seen(&self, coverage: &Coverage, plan: &mut DepthTests) -> Visible {
+        let Some(met) = coverage.direct.known() else {
+            return Visible::UNKNOWN;
+        };
+        // What is above the surface hides it.
+        let hides = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
+        let on_floor = if met.iter().any(hides) {
+            Some(false)
+        } else {
+            coverage.surface()
+        };
+        let floor = match on_floor {
+            Some(on_floor) => self.floor.as_ref().filter(|_| on_floor),
+            None => return Visible::UNKNOWN,
+        };
+        match (met, floor) {
+            ([], None) => Visible::Only(Shown::Paint(self.background)),
+            ([], Some(floor)) => self.visible_surface(floor, coverage, plan),
+            (_, floor) => {
+                if floor.is_none()
+                    && let Some(solid) = self.direct.order.first(met)
+                {
+                    return Visible::Only(solid_in(&self.direct, solid, coverage));
+                }
+                let rest = match floor {
+                    Some(floor) => self.visible_surface(floor, coverage, plan),
+                    None => Visible::Only(Shown::Paint(self.background)),
+                };
+                let shows = met
+                    .iter()
+                    .map(|&solid| (solid, solid_in(&self.direct, solid, coverage)));
+                plan.defer(false, shows, floor.is_some(), rest)
+            }
+        }
+    }
+
+    /// The same where the surface is met, and no solid in front of it.
+    fn visible_surface(
+        &self,
+        floor: &Floor<'_>,
+        coverage: &Coverage,
+        plan: &mut DepthTests,
+    ) -> Visible {
+        let itself = Visible::Only(Shown::Paint(floor.paint));
+        let mirrored = match (coverage.surface_in_shadow(), &floor.mirrored) {
+            (Some(true), _) => return Visible::Only(Shown::Paint(floor.in_shadow)),
+            (None, _) => return Visible::UNKNOWN,
+            (Some(false), None) => return itself,
+            (Some(false), Some(mirrored)) => mirrored,
+        };
+        let Some(met) = coverage.mirrored.known() else {
+            return Visible::UNKNOWN;
+        };
+        // A solid that goes through the surface may be met below it, where nothing is mirrored.
+        let goes_through = |&solid: &usize| mirrored.solids[solid].side != Side::Above;
+        if met.is_empty() {
+            return itself;
+        }
+        if met.iter().any(goes_through) {
+            return Visible::UNKNOWN;
+        }
+        if let Some(solid) = mirrored.order.first(met) {
+            return Visible::Only(solid_in(mirrored, solid, coverage));
+        }
+        let shows = met
+            .iter()
+            .map(|&solid| (solid, solid_in(mirrored, solid, coverage)));
+        plan.defer(true, shows, false, itself)
+    }
+}
+
+/// What a column shows where it sees a solid.
+fn solid_in(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Shown {
+    match &view.solids[solid].body {
+        Body::Flat(paint) => Shown::Paint(*paint),
+        Body::Sphere(_) => Shown::Sphere {
+            mirrored: view.mirrored,
+            solid: solid as u32,
+        },
+        Body::Facets(facets, pairs) => match last_entered(pairs, coverage) {
+            Some(last) => facet_in(&facets[last], coverage),
+            None => Shown::Unknown,
+        },
+        Body::Unknown => Shown::Unknown,
+    }
+}
+
+/// What it shows where it sees a face.
+fn facet_in(facet: &Facet, coverage: &Coverage) -> Shown {
+    if facet.turned_away {
+        return Shown::Paint(facet.in_shadow);
+    }
+    let mut all_known = true;
+    for shadow in facet.shadows.clone() {
+        match coverage.holds(shadow) {
+            Some(true) => return Shown::Paint(facet.in_shadow),
+            Some(false) => {}
+            None => all_known = false,
+        }
+    }
+    if all_known {
+        Shown::Paint(facet.lit)
+    } else {
+        Shown::Unknown
+    }
+}
+
+/// The facet that eye rays enter last.
+fn last_entered(pairs: &[Pair], coverage: &Coverage) -> Option<usize> {
+    let mut last = 0;
+    for pair in pairs {
+        if pair.facets.0 == last && !coverage.holds(pair.first)? {
+            last = pair.facets.1;
+        }
+    }
+    Some(last)
+}

@@ -1,0 +1,100 @@
+//! Which of two solids is in front of the other wherever both are met.
+//!
+//! All eye rays go the same way. Two convex solids that a plane keeps apart are met on either side of it, so every ray that meets
+//! both meets first the one that it is on the side of before it crosses the plane. This needs no depth, and is known for a whole frame.
+
+use bumpalo::Bump;
+
+use crate::number::{Bounded, Real};
+use crate::tracer::frame::looking;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::View;
+
+/// Beyond so many solids there are too many pairs to ask for all of them in every frame.
+const MOST: usize = 16;
+
+/// The order of the solids of a view.
+pub(crate) struct Separation<'f> {
+    /// The number of its solids; 0 where nothing is known.
+    count: usize,
+    /// For each pair, whether the first is in front of the second.
+    in_front: &'f [Option<bool>],
+}
+
+impl<'f> Separation<'f> {
+    /// Of the solids of `view` with these numbers, spheres before tetrahedra.
+    pub(crate) fn new(
+        view: &View<'_, Bounded>,
+        solids: std::ops::Range<usize>,
+        arena: &'f Bump,
+    ) -> Self {
+        let count = if solids.len() <= MOST {
+            solids.len()
+        } else {
+            0
+        };
+        let in_front = arena.alloc_slice_fill_copy(count * count, None);
+        for i in 0..count {
+            for j in 0..i {
+                let known = is_in_front(view, solids.start + i, solids.start + j);
+                in_front[i * count + j] = known;
+                in_front[j * count + i] = known.map(|first| !first);
+            }
+        }
+        Separation { count, in_front }
+    }
+
+    /// Which of `met` is in front of all others, if that is known.
+    pub(crate) fn first(&self, met: &[usize]) -> Option<usize> {
+        if let [only] = met {
+            return Some(*only);
+        }
+        let is_before = |a: usize, b: usize| {
+            a == b || self.in_front.get(a * self.count + b) == Some(&Some(true))
+        };
+        let is_first = |&a: &usize| met.iter().all(|&b| is_before(a, b));
+        met.iter().copied().find(is_first)
+    }
+}
+
+/// Whether solid `i` is in front of solid `j`; `None` where that is not known, or depends on the ray.
+fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
+    let toward_j = match (view.spheres.get(i), view.spheres.get(j)) {
+        (Some(a), Some(b)) => {
+            let between = b.center - a.center;
+            let gap = between.squared_length() - (a.radius + b.radius).squared();
+            is_positive(gap).then_some(between)
+        }
+        _ => apart_by_face(view, i, j).or_else(|| apart_by_face(view, j, i).map(|way| -way)),
+    }?;
+    let along = looking::<Bounded>().vector.dot(toward_j);
+    // Rays along the plane meet one of them only.
+    along.sign().ok().map(|sign| sign.is_gt())
+}
+
+/// The way from solid `i`, a tetrahedron, to solid `j` across a face that keeps them apart.
+fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<Bounded>> {
+    let t = view.tetrahedra.get(i.checked_sub(view.spheres.len())?)?;
+    (0..4).find_map(|face| {
+        let plane = t.solid.plane(face);
+        let outward = -plane.normal;
+        let height = |point: Vector<Bounded>| outward.dot(point - plane.at);
+        let is_beyond = match view.spheres.get(j) {
+            Some(sphere) => {
+                let height = height(sphere.center);
+                let reach = sphere.radius.squared() * outward.squared_length();
+                is_positive(height) && is_positive(height.squared() - reach)
+            }
+            None => {
+                let other = &view.tetrahedra[j - view.spheres.len()].solid;
+                let mut heights = other.vertices().map(height).into_iter();
+                heights.all(is_positive)
+            }
+        };
+        is_beyond.then_some(outward)
+    })
+}
+
+fn is_positive(x: Bounded) -> bool {
+    x.sign().is_ok_and(|sign| sign.is_gt())
+}
