@@ -42,6 +42,7 @@ impl PartialEq for Image {
 
 /// An image that cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// N is not from 1 to [`MAX_SIZE`].
     #[error("a picture of {0} × {0} pixels cannot be made: choose a size from 1 to {MAX_SIZE}")]

@@ -30,9 +30,11 @@
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another, in numbers and in false colours |
+//! | [`memory`] | which memory may be refused, for a program's allocator |
 #![cfg_attr(
     feature = "screen",
-    doc = "| [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |"
+    doc = "| [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |",
+    doc = "| [`fault`] | which panics become errors, for a program's panic hook |"
 )]
 #![cfg_attr(
     feature = "program",

@@ -152,6 +152,7 @@ pub struct Measured {
 
 /// A report that cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReportError {
     /// There is no picture of that size.
     #[error(transparent)]

@@ -1,8 +1,15 @@
 //! Scene, stage and α in; image out.
 //!
-//! Every formula of the picture is written once, over an abstract number: a line and a [sphere](self), a line and a
-//! tetrahedron, a line and the surface, equation 4-1. A [`Kernel`] is a choice of that number. Most pixels are not asked one by
-//! one: where borders cross a row is computed from the same formulas, and what lies between them is filled or shaded at once.
+//! Every formula of the picture is written once, over an abstract number (`number.rs`). A [`Kernel`] is a
+//! choice of that number, and of what is done where it is in doubt. To be read in this order:
+//!
+//! - `frame`, `view`: the scene turned by α and measured in pixels, and its mirror image;
+//! - `line`, `sphere`, `tetrahedron`, `surface`: a ray and what it meets; `shading`: equation 4-1;
+//! - `pixel`: what a pixel shows, from these: the definition of the picture;
+//! - `ladder`: the same asked of f64 with bounds, then of double-doubles, then of arbitrary precision;
+//! - `scanline`: the same again for whole rows at once, which makes nearly every pixel;
+//! - `listing`: the document's own way, slips included, by itself;
+//! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words.
 
 mod arena;
 mod decision;

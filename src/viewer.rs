@@ -67,6 +67,7 @@ pub struct Options {
 
 /// Something that a person at the terminal may want to know, as a line of text, or some, by [`fmt::Display`].
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Event {
     /// There is a window with an OpenGL context: whatever might have kept it is behind us.
     Opened,

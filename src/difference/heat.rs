@@ -39,6 +39,7 @@ pub fn save_heat(image: &Image, truth: &Image, path: impl AsRef<Path>) -> Result
 
 /// A false-colour picture that cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum HeatError {
     /// The two pictures are not of one size.
     #[error(transparent)]

@@ -8,6 +8,7 @@ pub(super) const MAX_FRAMES: u64 = 1 << 30;
 
 /// A file that cannot be written. Nothing is left of it: what was there before is there still.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SaveError {
     /// The extension names no format.
     #[error("{}: this extension names no format: choose .png, .exr or, for an animation, .apng", .0.display())]

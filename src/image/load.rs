@@ -15,6 +15,7 @@ use crate::memory;
 
 /// A file that no picture can be read from. Each message is one line.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LoadError {
     /// The extension names no format that can be read.
     #[error("{}: this extension names no picture that can be read: choose an .exr or a .png", .0.display())]

@@ -4,6 +4,7 @@ use crate::image::ImageError;
 
 /// A screen that cannot be made or used. Each message is one line.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScreenError {
     /// A library that the way to the screen needs is not there.
     #[error(

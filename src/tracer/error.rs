@@ -4,6 +4,7 @@ use std::io;
 
 /// A tracer that cannot be made, or a frame that cannot be traced.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TraceError {
     /// α is a NaN or an infinity.
     #[error("α = {0} is not an angle: give a finite number of radians")]

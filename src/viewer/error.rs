@@ -6,6 +6,7 @@ use crate::tracer::TraceError;
 
 /// A viewer that cannot open or go on. Each message is one line.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewerError {
     /// Neither an X server nor a Wayland compositor is named.
     #[error(
