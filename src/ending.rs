@@ -6,10 +6,12 @@ mod memory;
 mod signals;
 
 use std::backtrace::{Backtrace, BacktraceStatus};
+use std::cell::Cell;
 use std::io::{self, Write as _};
 use std::panic::{self, PanicHookInfo};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use std::time::Duration;
 
 use firsthit::fault;
 use firsthit::image::abandon_unfinished;
@@ -37,8 +39,15 @@ pub(crate) fn at_once() -> ! {
 /// Waits for ever where another thread ends the program already, so that no second line is said.
 fn only_once() {
     static ENDING: AtomicBool = AtomicBool::new(false);
+    thread_local! {
+        static HERE: Cell<bool> = const { Cell::new(false) };
+    }
+    // A thread that finds no memory for its line says that instead.
+    if HERE.replace(true) {
+        return;
+    }
     while ENDING.swap(true, Ordering::Relaxed) {
-        thread::park();
+        thread::sleep(Duration::from_secs(1));
     }
 }
 
@@ -49,6 +58,11 @@ fn fault(panic: &PanicHookInfo<'_>) {
     }
     only_once();
     let words = fault::words(panic.payload());
+    // The standard library panics where a new thread is refused the memory for its signals.
+    if words.contains("(os error 12)") {
+        crate::say(&format!("not enough memory: {words}"));
+        at_once();
+    }
     let place = panic
         .location()
         .map_or_else(String::new, |place| format!(" at {place}"));
