@@ -46,7 +46,8 @@ fn memory_that_is_refused_is_one_line() {
         &format!("capture --stage 6 --size 200 --scene {crowd} --through none -o a.exr"),
     ] {
         let (mut refused, mut done) = (0, 0);
-        for kib in (least..).step_by(1 << 11) {
+        // Closer to where the program cannot be loaded, C's library ends it before it begins.
+        for kib in (least + (1 << 10)..).step_by(1 << 11) {
             let limit = format!("export RUST_BACKTRACE=1; ulimit -v {kib}");
             let output = program_after(&limit, &folder, line).output().unwrap();
             let what = format!("{line}, {kib} KiB");
