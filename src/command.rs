@@ -9,6 +9,7 @@ mod report;
 mod view;
 mod waiting;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -98,9 +99,9 @@ pub(crate) enum Failure {
     StandardOutput(io::Error),
 }
 
-/// Does what the command line says.
-pub(crate) fn run() -> Result<(), Failure> {
-    let line = CommandLine::try_parse()?;
+/// Does what the words of a command line say, of which the first is the program's name.
+pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let line = CommandLine::try_parse_from(words)?;
     match line.command.unwrap_or(Command::View(line.view)) {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
@@ -109,6 +110,20 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Scene => print(BUILTIN_TOML),
     }
+}
+
+/// One line on standard error, whatever is in `message`: a file's name may hold line breaks.
+pub(crate) fn say(message: &str) {
+    let mut line = String::from("firsthit: ");
+    for character in message.chars() {
+        if character.is_control() {
+            line.extend(character.escape_default());
+        } else {
+            line.push(character);
+        }
+    }
+    line.push('\n');
+    let _ = io::stderr().write_all(line.as_bytes());
 }
 
 fn print(text: &str) -> Result<(), Failure> {

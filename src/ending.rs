@@ -60,14 +60,14 @@ fn fault(panic: &PanicHookInfo<'_>) {
     let words = fault::words(panic.payload());
     // The standard library panics where a new thread is refused the memory for its signals.
     if words.contains("(os error 12)") {
-        crate::say(&format!("not enough memory: {words}"));
+        crate::command::say(&format!("not enough memory: {words}"));
         at_once();
     }
     let place = panic
         .location()
         .map_or_else(String::new, |place| format!(" at {place}"));
     let version = env!("CARGO_PKG_VERSION");
-    crate::say(&format!(
+    crate::command::say(&format!(
         "a fault of version {version}{place}: {words}: please report this line, and what led to it"
     ));
     let backtrace = Backtrace::capture();

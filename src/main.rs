@@ -3,7 +3,7 @@
 mod command;
 mod ending;
 
-use std::io::{self, Write};
+use std::env;
 use std::process::ExitCode;
 
 use command::Failure;
@@ -14,7 +14,7 @@ static MEMORY: Memory = Memory;
 
 fn main() -> ExitCode {
     ending::prepare();
-    match command::run() {
+    match command::run(env::args_os()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(answer)) => {
             // Where nobody listens any more there is nothing to be done about it.
@@ -23,22 +23,8 @@ fn main() -> ExitCode {
             ExitCode::from(if answer.use_stderr() { 2 } else { 0 })
         }
         Err(failure) => {
-            say(&failure.to_string());
+            command::say(&failure.to_string());
             ExitCode::FAILURE
         }
     }
-}
-
-/// One line on standard error, whatever is in `message`: a file's name may hold line breaks.
-fn say(message: &str) {
-    let mut line = String::from("firsthit: ");
-    for character in message.chars() {
-        if character.is_control() {
-            line.extend(character.escape_default());
-        } else {
-            line.push(character);
-        }
-    }
-    line.push('\n');
-    let _ = io::stderr().write_all(line.as_bytes());
 }

@@ -1,11 +1,15 @@
 //! Promise: a file of a picture keeps what its format can hold.
 
 use std::fs;
+use std::path::Path;
 
+use exr::image::write::WritableImage;
+use exr::image::{Encoding, Image as Part, SpecificChannels};
+use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::prelude::Compression;
+use exr::prelude::{Blocks, Compression, LineOrder, f16};
 use firsthit::Image;
-use firsthit::image::display_byte;
+use firsthit::image::{LoadError, display_byte};
 
 use crate::helpers::{bits, exr_bits};
 
@@ -88,4 +92,77 @@ fn a_display_byte_is_rounded_to_even_in_f32() {
     ] {
         assert_eq!(display_byte(sample), byte, "{sample}");
     }
+}
+
+/// The halves that [`write_halves`] writes, as floats.
+fn half(column: usize, row_from_top: usize, channel: usize) -> f32 {
+    [0.0, 0.25, -1.5, 60000.0, 5.0][(column / 6 + row_from_top / 4 + channel) % 5]
+}
+
+/// An EXR of 11 × 11 pixels as another program may write it.
+fn write_halves(path: &Path, compression: Compression) {
+    let encoding = Encoding {
+        compression,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {
+        let half = |channel| f16::from_f32(half(column, row_from_top, channel));
+        (half(0), half(1), half(2))
+    });
+    Part::from_encoded_channels((11, 11), encoding, channels)
+        .write()
+        .to_file(path)
+        .unwrap();
+}
+
+/// That of B44 and of DWA, which have halves in mind, panics or aborts on what the next test writes.
+#[test]
+fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
+    use Compression::{B44, B44A, DWAA, DWAB, PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("half.exr");
+    for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24] {
+        write_halves(&path, compression);
+        let image = Image::load(&path).unwrap();
+        for (i, sample) in image.samples().iter().enumerate() {
+            let (column, row) = (i / 3 % 11, i / 3 / 11);
+            let expected = half(column, 10 - row, i % 3);
+            assert_eq!(sample.to_bits(), expected.to_bits(), "{compression} {i}");
+        }
+    }
+    for compression in [B44, B44A, DWAA(None), DWAB(None)] {
+        write_halves(&path, compression);
+        let said = Image::load(&path).unwrap_err().to_string();
+        let expected =
+            format!("half.exr: {compression} is not read: convert it to zip compression");
+        assert!(said.ends_with(&expected), "{said}");
+    }
+}
+
+/// Of these files, the headers are sound and the only block is not: in that of B44, the first number of 16 is less than what is taken from it;
+/// that of DWA says that it has 2^63 − 1 coefficients.
+#[test]
+fn no_decoder_sees_a_block_that_it_would_break_at() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("crafted.exr");
+    let crafted = |compression, craft: fn(&mut [u8])| {
+        write_halves(&path, compression);
+        let mut file = fs::read(&path).unwrap();
+        // The only place that the table of one place names is behind the table.
+        let is_table = |&place: &usize| file[place..place + 8] == (place as u64 + 8).to_le_bytes();
+        let table = (0..file.len() - 8).find(is_table).unwrap();
+        // Behind its first row and its length.
+        craft(&mut file[table + 16..]);
+        fs::write(&path, file).unwrap();
+        let refused = Image::load(&path);
+        assert!(
+            matches!(refused, Err(LoadError::Compression { .. })),
+            "{refused:?}"
+        );
+    };
+    crafted(Compression::B44, |block| block[..14].fill(0));
+    crafted(Compression::DWAA(None), |block| {
+        block[64..72].copy_from_slice(&i64::MAX.to_le_bytes());
+    });
 }

@@ -21,6 +21,7 @@ mod compare;
 mod drivers;
 #[cfg(feature = "program")]
 mod explain;
+mod fuzz;
 mod helpers;
 mod image_files;
 mod imports;

@@ -168,7 +168,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Said last: where the capture fails, one line says why, and no other.
     if let Some(note) = capture.passage.note() {
-        crate::say(&note);
+        super::say(&note);
     }
     Ok(())
 }

@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut opening = Some(Waiting::for_driver(options.size));
     viewer::run(options, &mut |event| match event {
         Event::Opened => opening = None,
-        Event::NotSaved(_) | Event::Differs { .. } => crate::say(&event.to_string()),
+        Event::NotSaved(_) | Event::Differs { .. } => super::say(&event.to_string()),
         // A person who closed the terminal still has the window.
         Event::FirstFrame { .. } => drop(print(&format!("{}{event}\n", viewer::key_table()))),
         _ => drop(print(&format!("{event}\n"))),

@@ -42,10 +42,10 @@ impl Waiting {
             if end.recv_timeout(LONG) != Err(RecvTimeoutError::Timeout) {
                 return;
             }
-            crate::say(&format!("waits {what}: Ctrl+C ends it"));
+            super::say(&format!("waits {what}: Ctrl+C ends it"));
             let Some(limit) = limit else { return };
             if end.recv_timeout(limit - LONG) == Err(RecvTimeoutError::Timeout) {
-                crate::say(&format!(
+                super::say(&format!(
                     "waited {what}, and gave up after {} s: try another driver, or `firsthit capture --through none`, which needs no OpenGL",
                     limit.as_secs()
                 ));

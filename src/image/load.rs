@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
+use ::exr::compression::Compression;
 use ::exr::error::Error;
 use ::exr::image::read::image::ReadLayers;
 use ::exr::image::read::layers::ReadChannels;
@@ -37,6 +38,14 @@ pub enum LoadError {
         format: Format,
         /// What is wrong with it.
         reason: String,
+    },
+    /// It is an EXR whose compression is not read here: of a damaged file, its decoder could overflow or take all memory.
+    #[error("{}: {compression} is not read: convert it to zip compression", path.display())]
+    Compression {
+        /// The file.
+        path: PathBuf,
+        /// Which one it is.
+        compression: String,
     },
     /// It is not as wide as high.
     #[error("{}: is {width} × {height} pixels: give a picture that is as wide as high", path.display())]
@@ -87,6 +96,10 @@ impl Image {
                 format,
                 reason,
             },
+            Problem::Compression(compression) => LoadError::Compression {
+                path: path.to_owned(),
+                compression: compression.to_string(),
+            },
             Problem::NotSquare(width, height) => LoadError::NotSquare {
                 path: path.to_owned(),
                 width,
@@ -105,6 +118,7 @@ impl Image {
 enum Problem {
     Io(io::Error),
     Damaged(String),
+    Compression(Compression),
     NotSquare(usize, usize),
     Transparent,
     Image(ImageError),
@@ -138,7 +152,19 @@ fn square(width: usize, height: usize) -> Result<Image, Problem> {
     Image::new(u32::try_from(width).unwrap_or(u32::MAX)).map_err(Problem::Image)
 }
 
+/// Whether the decoder refuses whatever is wrong with a file. That of B44 computes with numbers of a file unchecked, that of DWA allocates as
+/// much as a file says.
+fn is_safe(compression: Compression) -> bool {
+    use Compression::*;
+    matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24)
+}
+
 fn read_exr(file: BufReader<File>) -> Result<Image, Problem> {
+    let file = ::exr::block::read(file, false)?;
+    let mut compressions = file.headers().iter().map(|header| header.compression);
+    if let Some(compression) = compressions.find(|&compression| !is_safe(compression)) {
+        return Err(Problem::Compression(compression));
+    }
     ::exr::image::read::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -154,7 +180,7 @@ fn read_exr(file: BufReader<File>) -> Result<Image, Problem> {
         )
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(file)?
+        .from_chunks(file)?
         .layer_data
         .channel_data
         .pixels
