@@ -100,10 +100,10 @@ fn half(column: usize, row_from_top: usize, channel: usize) -> f32 {
 }
 
 /// An EXR of 11 × 11 pixels as another program may write it.
-fn write_halves(path: &Path, compression: Compression) {
+fn write_halves(path: &Path, compression: Compression, blocks: Blocks) {
     let encoding = Encoding {
         compression,
-        blocks: Blocks::ScanLines,
+        blocks,
         line_order: LineOrder::Increasing,
     };
     let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {
@@ -123,7 +123,7 @@ fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("half.exr");
     for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24] {
-        write_halves(&path, compression);
+        write_halves(&path, compression, Blocks::ScanLines);
         let image = Image::load(&path).unwrap();
         for (i, sample) in image.samples().iter().enumerate() {
             let (column, row) = (i / 3 % 11, i / 3 / 11);
@@ -132,7 +132,7 @@ fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
         }
     }
     for compression in [B44, B44A, DWAA(None), DWAB(None)] {
-        write_halves(&path, compression);
+        write_halves(&path, compression, Blocks::ScanLines);
         let said = Image::load(&path).unwrap_err().to_string();
         let expected =
             format!("half.exr: {compression} is not read: convert it to zip compression");
@@ -147,7 +147,7 @@ fn no_decoder_sees_a_block_that_it_would_break_at() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("crafted.exr");
     let crafted = |compression, craft: fn(&mut [u8])| {
-        write_halves(&path, compression);
+        write_halves(&path, compression, Blocks::ScanLines);
         let mut file = fs::read(&path).unwrap();
         // The only place that the table of one place names is behind the table.
         let is_table = |&place: &usize| file[place..place + 8] == (place as u64 + 8).to_le_bytes();
@@ -165,4 +165,52 @@ fn no_decoder_sees_a_block_that_it_would_break_at() {
     crafted(Compression::DWAA(None), |block| {
         block[64..72].copy_from_slice(&i64::MAX.to_le_bytes());
     });
+}
+
+/// The numbers of an attribute are changed, and nothing else.
+#[test]
+fn what_takes_too_much_memory_is_refused_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("crafted.exr");
+    let load = |blocks, attribute: &[u8], numbers: &[i32]| {
+        write_halves(&path, Compression::PIZ, blocks);
+        let mut file = fs::read(&path).unwrap();
+        let mut places = file.windows(attribute.len());
+        let place = places.position(|window| window == attribute).unwrap() + attribute.len();
+        let numbers: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        file[place..place + numbers.len()].copy_from_slice(&numbers);
+        fs::write(&path, file).unwrap();
+        Image::load(&path).unwrap_err().to_string()
+    };
+    let window = b"dataWindow\0box2i\0\x10\0\0\0";
+    let wide = load(Blocks::ScanLines, window, &[-(1 << 29), 0, 10, 10]);
+    assert!(wide.contains("is 536870923 × 11 pixels"), "{wide}");
+    let tile = Vec2(16, 16);
+    let tiles = b"tiles\0tiledesc\0\x09\0\0\0";
+    let tile = load(Blocks::Tiles(tile), tiles, &[1 << 29, 1 << 29]);
+    assert!(tile.contains("a block of it has"), "{tile}");
+}
+
+#[test]
+fn a_palette_is_one_of_whole_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("indexed.png");
+    let load = |palette: &[u8]| {
+        let mut encoder = png::Encoder::new(fs::File::create(&path).unwrap(), 1, 1);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(palette);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&[1]).unwrap();
+        writer.finish().unwrap();
+        Image::load(&path)
+    };
+    let image = load(&[0, 0, 0, 255, 0, 51]).unwrap();
+    assert_eq!(image.samples(), [1.0, 0.0, 0.2]);
+    // The decoder would panic at what is left of it.
+    for palette in [&[0, 0, 0, 255][..], &[0, 0, 0, 255, 0]] {
+        let said = load(palette).unwrap_err().to_string();
+        let length = palette.len();
+        let expected = format!("its palette has {length} bytes, not 3 for each colour");
+        assert!(said.ends_with(&expected), "{said}");
+    }
 }

@@ -9,9 +9,11 @@ use ::exr::error::Error;
 use ::exr::image::read::image::ReadLayers;
 use ::exr::image::read::layers::ReadChannels;
 use ::exr::math::Vec2;
+use ::exr::meta::BlockDescription;
+use ::exr::meta::header::Header;
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
-use super::{Format, Image, ImageError};
+use super::{Format, Image, ImageError, MAX_SIZE};
 use crate::memory;
 
 /// A file that no picture can be read from. Each message is one line.
@@ -144,12 +146,20 @@ impl From<DecodingError> for Problem {
     }
 }
 
-/// A black picture of the size that a file says it has: checked before anything of that size is allocated.
-fn square(width: usize, height: usize) -> Result<Image, Problem> {
+/// N of the size that a file says it has: checked before anything of that size is allocated.
+fn side(width: usize, height: usize) -> Result<u32, Problem> {
     if width != height {
         return Err(Problem::NotSquare(width, height));
     }
-    Image::new(u32::try_from(width).unwrap_or(u32::MAX)).map_err(Problem::Image)
+    match u32::try_from(width).unwrap_or(u32::MAX) {
+        side @ 1..=MAX_SIZE => Ok(side),
+        other => Err(Problem::Image(ImageError::Size(other))),
+    }
+}
+
+/// A black picture of that size.
+fn square(width: usize, height: usize) -> Result<Image, Problem> {
+    Image::new(side(width, height)?).map_err(Problem::Image)
 }
 
 /// Whether the decoder refuses whatever is wrong with a file. That of B44 computes with numbers of a file unchecked, that of DWA allocates as
@@ -159,11 +169,37 @@ fn is_safe(compression: Compression) -> bool {
     matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24)
 }
 
+/// The bytes of the largest picture and its opacity. The decoder allocates a whole block before it reads any of it.
+const MAX_BLOCK: usize = 16 * (MAX_SIZE as usize).pow(2);
+
+/// Refuses the part of a file that would be read, where the decoder could not refuse it by itself or only after it has decoded all of it.
+fn check_part(part: &Header) -> Result<(), Problem> {
+    side(part.layer_size.width(), part.layer_size.height())?;
+    if !is_safe(part.compression) {
+        return Err(Problem::Compression(part.compression));
+    }
+    let block = match part.blocks {
+        BlockDescription::Tiles(tiles) => tiles.tile_size,
+        BlockDescription::ScanLines => Vec2(
+            part.layer_size.width(),
+            part.compression.scan_lines_per_block(),
+        ),
+    };
+    let pixels = block.width().saturating_mul(block.height());
+    match pixels.saturating_mul(part.channels.bytes_per_pixel) {
+        0..=MAX_BLOCK => Ok(()),
+        bytes => Err(Problem::Damaged(format!("a block of it has {bytes} bytes"))),
+    }
+}
+
 fn read_exr(file: BufReader<File>) -> Result<Image, Problem> {
     let file = ::exr::block::read(file, false)?;
-    let mut compressions = file.headers().iter().map(|header| header.compression);
-    if let Some(compression) = compressions.find(|&compression| !is_safe(compression)) {
-        return Err(Problem::Compression(compression));
+    let channels = ["R", "G", "B"];
+    let has = |part: &Header, name| part.channels.list.iter().any(|own| own.name.eq(name));
+    // The first that has them is the one that is read.
+    let mut parts = file.headers().iter();
+    if let Some(part) = parts.find(|part| channels.iter().all(|name| has(part, name))) {
+        check_part(part)?;
     }
     ::exr::image::read::read()
         .no_deep_data()
@@ -192,6 +228,15 @@ fn read_png(file: BufReader<File>) -> Result<Image, Problem> {
     let mut reader = decoder.read_info()?;
     let (width, height) = reader.info().size();
     let mut image = square(width as usize, height as usize)?;
+    // The decoder takes a palette apart by threes, and would panic at what is left.
+    let palette = reader.info().palette.as_deref().unwrap_or_default();
+    if !palette.len().is_multiple_of(3) {
+        let reason = format!(
+            "its palette has {} bytes, not 3 for each colour",
+            palette.len()
+        );
+        return Err(Problem::Damaged(reason));
+    }
     let too_large = || Problem::Image(ImageError::Memory(width));
     let mut bytes = Vec::new();
     let length = reader.output_buffer_size().ok_or_else(too_large)?;
