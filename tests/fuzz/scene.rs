@@ -178,7 +178,7 @@ impl Choices<'_> {
 
     /// A multiple of a small power of two, of which most sums are exact.
     fn dyadic(&mut self) -> f64 {
-        let denominator = self.one_of(&[64.0, 64.0, 32.0, 16.0, 8.0, 1.0, 1024.0, 4096.0]);
+        let denominator = self.one_of(&[64.0, 64.0, 64.0, 128.0, 128.0, 16.0, 1.0, 1024.0]);
         f64::from(self.byte() as i8) / denominator
     }
 
@@ -238,14 +238,15 @@ impl Choice {
             0 => choices.one_of(&Stage::ALL),
             _ => Stage::Reflection,
         };
-        let alpha = match choices.below(12) {
-            0..6 => 0.0,
-            6 => frame_angle(choices.byte().into()),
-            7 => choices.one_of(&[1e-9, FRAC_PI_2, -FRAC_PI_2, 1e22, f64::MAX, 0.3, 1e-30]),
+        let alpha = match choices.below(16) {
+            0..8 => 0.0,
+            8 | 9 => frame_angle(choices.byte().into()),
+            10 => choices.one_of(&[1e-9, FRAC_PI_2, -FRAC_PI_2, 1e22, f64::MAX, 0.3, 1e-30]),
             // Subnormal, or of any size.
-            8 => f64::from_bits(choices.word() & 0x800f_ffff_ffff_ffff),
-            9 => choices.any(-1074..1024),
-            10 => choices.dyadic(),
+            11 => f64::from_bits(choices.word() & 0x800f_ffff_ffff_ffff),
+            12 => choices.any(-1022..1024),
+            13 => choices.any(-20..7),
+            14 => choices.dyadic(),
             _ => {
                 let quarters = f64::from(choices.byte() as i8);
                 step(quarters * FRAC_PI_2, choices.ulps())
@@ -282,22 +283,27 @@ impl Choice {
 impl Builder<'_> {
     fn number(&mut self) -> f64 {
         let old = self.choices.one_of(&self.numbers);
-        let number = match self.choices.below(10) {
-            0..3 => self.choices.dyadic(),
-            3 => old,
-            4 => step(old, self.choices.ulps()),
-            5 => {
+        let number = match self.choices.below(16) {
+            0..6 => self.choices.dyadic(),
+            6 | 7 => old,
+            8 => step(old, self.choices.ulps()),
+            9 => {
                 let sign = self.choices.one_of(&[1.0, -1.0]);
                 sign * self.choices.one_of(&EXTREMES)
             }
-            6 => self.choices.any(-99..20),
-            7 => self.choices.any(-10..2),
-            8 => old + self.choices.one_of(&self.numbers),
+            10 => self.choices.any(-99..20),
+            11 | 12 => self.choices.any(-10..0),
+            13 => old + self.choices.one_of(&self.numbers),
             _ => old - self.choices.dyadic(),
         };
         let number = fit(number);
         self.numbers.push(number);
         number
+    }
+
+    /// A radius, mostly less than the screen.
+    fn radius(&mut self) -> f64 {
+        self.number().abs() * self.choices.one_of(&[1.0, 0.5, 0.25])
     }
 
     /// A place of the screen at a sample.
@@ -351,7 +357,7 @@ impl Builder<'_> {
             (0, Some((center, radius))) => (center, step(radius, self.choices.ulps())),
             // It touches another one from outside or inside.
             (1, Some((center, radius))) => {
-                let own = self.number().abs();
+                let own = self.radius();
                 let side = self.choices.one_of(&[1.0, -1.0]);
                 let mut other = center;
                 other[self.choices.below(3)] += radius + side * own;
@@ -390,11 +396,11 @@ impl Builder<'_> {
             }
             // A sample sees its rim exactly, beside its centre, for α = 0.
             (6, _) => {
-                let radius = self.number().abs();
+                let radius = self.radius();
                 let sample = self.sample();
                 (sample + self.looking * 0.625 + DVec3::X * radius, radius)
             }
-            _ => (self.point(), self.number().abs()),
+            _ => (self.point(), self.radius()),
         };
         let radius = fit(step(radius, self.choices.ulps())).abs();
         let center = DVec3::from_array(center.to_array().map(fit));
@@ -404,6 +410,20 @@ impl Builder<'_> {
     }
 
     fn tetrahedron(&mut self) -> [DVec3; 4] {
+        let mut vertices = self.corners();
+        let [a, b, c, d] = vertices;
+        if (b - a).cross(c - a).dot(d - a) == 0.0 {
+            // Flat, as a rule, which is refused.
+            vertices[1].x += 0.125;
+            vertices[2].y += 0.375;
+            vertices[3].z -= 0.25;
+        }
+        let vertices = vertices.map(|v| DVec3::from_array(v.to_array().map(fit)));
+        self.points.extend(vertices);
+        vertices
+    }
+
+    fn corners(&mut self) -> [DVec3; 4] {
         if let Some(&last) = self.tetrahedra.last() {
             let mut again = last;
             let first = self.choices.below(8);
@@ -437,8 +457,6 @@ impl Builder<'_> {
             }
             _ => {}
         }
-        let vertices = vertices.map(|v| DVec3::from_array(v.to_array().map(fit)));
-        self.points.extend(vertices);
         vertices
     }
 
@@ -462,11 +480,18 @@ impl Builder<'_> {
                 DVec3::new(self.number(), self.number(), self.number()) * length.exp2()
             }
         };
-        DVec3::new(
+        let light = DVec3::new(
             step(light.x, self.choices.ulps()),
             step(light.y, self.choices.ulps()),
             light.z,
-        )
+        );
+        // What is beside it as good as 0 would be refused.
+        let least = light.abs().max_element() * 1e-30;
+        let component = |c: f64| if c.abs() <= least { 0.0 } else { c };
+        match light.to_array().map(component) {
+            [0.0, 0.0, 0.0] => DVec3::NEG_Y,
+            components => DVec3::from_array(components),
+        }
     }
 
     /// A colour's or an intensity's three numbers.
