@@ -430,9 +430,8 @@ impl Builder<'_> {
             if first < 4 {
                 again.rotate_left(first);
                 // The same again, or one that shares a face or an edge.
-                for vertex in 0..self.choices.below(3) {
-                    again[vertex] = self.point();
-                }
+                let new = self.choices.below(3);
+                again[..new].fill_with(|| self.point());
                 return again;
             }
         }
