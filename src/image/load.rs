@@ -77,7 +77,8 @@ impl Image {
     /// (of a PNG of 16 bits: the number / 65535), rounded to f32.
     ///
     /// # Errors
-    /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture that is as wide as high and opaque.
+    /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture that is as wide as high and opaque, or it is an
+    /// EXR compressed by B44 or DWA.
     pub fn load(path: impl AsRef<Path>) -> Result<Image, LoadError> {
         let path = path.as_ref();
         let format = Format::of(path).map_err(|_| LoadError::Extension(path.to_owned()))?;
@@ -170,7 +171,7 @@ fn is_safe(compression: Compression) -> bool {
 }
 
 /// The bytes of the largest picture and its opacity. The decoder allocates a whole block before it reads any of it.
-const MAX_BLOCK: usize = 16 * (MAX_SIZE as usize).pow(2);
+const MAX_BLOCK: u64 = 16 * (MAX_SIZE as u64).pow(2);
 
 /// Refuses the part of a file that would be read, where the decoder could not refuse it by itself or only after it has decoded all of it.
 fn check_part(part: &Header) -> Result<(), Problem> {
@@ -178,15 +179,15 @@ fn check_part(part: &Header) -> Result<(), Problem> {
     if !is_safe(part.compression) {
         return Err(Problem::Compression(part.compression));
     }
-    let block = match part.blocks {
+    let Vec2(width, height) = match part.blocks {
         BlockDescription::Tiles(tiles) => tiles.tile_size,
         BlockDescription::ScanLines => Vec2(
             part.layer_size.width(),
             part.compression.scan_lines_per_block(),
         ),
     };
-    let pixels = block.width().saturating_mul(block.height());
-    match pixels.saturating_mul(part.channels.bytes_per_pixel) {
+    let numbers = [width, height, part.channels.bytes_per_pixel].map(|number| number as u64);
+    match numbers.into_iter().fold(1, u64::saturating_mul) {
         0..=MAX_BLOCK => Ok(()),
         bytes => Err(Problem::Damaged(format!("a block of it has {bytes} bytes"))),
     }
