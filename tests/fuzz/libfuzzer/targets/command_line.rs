@@ -3,6 +3,7 @@
 #[path = "../../../../src"]
 mod program {
     pub mod command;
+    pub mod ending;
 }
 #[path = "../../command_line.rs"]
 mod target;
@@ -11,7 +12,8 @@ use std::env;
 use std::iter::once;
 use std::path::Path;
 
-use program::command::{self, Failure};
+use program::command::Failure;
+use program::{command, ending};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| target::run(bytes, &act));
 
