@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use firsthit::image::abandon_unfinished;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
@@ -13,6 +14,9 @@ use signal_hook::low_level::emulate_default_handler;
 pub(super) fn watch() {
     // A file that grows beyond what is allowed is an error of the write then, which is told as any other.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+    // C's library aborts, after a line, where it is refused memory that it has no error for: the status is then that of every failure.
+    let always = Arc::new(AtomicBool::new(true));
+    let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, always);
     // It registers itself what it waits for: where there is no thread for it, signals end the program as they do any.
     let _ = thread::Builder::new()
         .name("signals".to_owned())
