@@ -1,4 +1,5 @@
-//! The commit that the program is built from, for the report to name: looked up once, here, and without running anything.
+//! The commit that the program is built from, for the report to name: looked up once, here, and
+//! without running anything.
 
 #![allow(clippy::print_stdout, reason = "Cargo listens there")]
 

@@ -5,7 +5,8 @@ pub use crate::number::sin_cos;
 /// The frames of a round of the animation: the document adds 0.3 until α > 6.28.
 pub const ROUND: u64 = 21;
 
-/// α_k = 3k/10 rounded once to f64, the angle in radians of animation frame `k`, which counts modulo [`ROUND`].
+/// α_k = 3k/10 rounded once to f64, the angle in radians of animation frame `k`, which counts
+/// modulo [`ROUND`].
 ///
 /// ```
 /// use firsthit::camera::frame_angle;

@@ -1,8 +1,9 @@
 //! How far one picture is from another: in floats, in absolute value, in bytes of a display.
 //!
-//! An error in **f32 steps** is the number of floats from one sample to the other: 0 for equal samples, 1 for neighbours. It is the error
-//! in ulp wherever both samples have the same exponent, it is a whole number, and it can be counted without knowing more of the truth than
-//! its nearest f32.
+//! An error in **f32 steps** is the number of floats from one sample to the other: 0 for equal
+//! samples, 1 for neighbours. It is the error in ulp wherever both samples have the same exponent,
+//! it is a whole number, and it can be counted without knowing more of the truth than its nearest
+//! f32.
 
 #[cfg(feature = "program")]
 mod heat;
@@ -19,8 +20,9 @@ pub use scale::error_color;
 #[error("{0} × {0} and {1} × {1} pixels cannot be compared: give two pictures of one size")]
 pub struct SizesDiffer(pub u32, pub u32);
 
-/// How many floats `a` is from `b`: both zeros are one, an infinity is the one after the largest float, and all NaNs are one.
-/// `None` where only one of the two is a NaN: nothing tells how far that is.
+/// How many floats `a` is from `b`: both zeros are one, an infinity is the one after the largest
+/// float, and all NaNs are one. `None` where only one of the two is a NaN: nothing tells how far
+/// that is.
 ///
 /// ```
 /// use firsthit::difference::steps;
@@ -48,8 +50,9 @@ fn place(sample: f32) -> i32 {
 
 /// What there is to say about any number of samples, each compared with its true value.
 ///
-/// A pair with one NaN counts among [`wrong`](Difference::wrong), [`nan_against_number`](Difference::nan_against_number) and, where the
-/// bytes differ, [`eight_bit`](Difference::eight_bit); no other number here knows of it.
+/// A pair with one NaN counts among [`wrong`](Difference::wrong),
+/// [`nan_against_number`](Difference::nan_against_number) and, where the bytes differ,
+/// [`eight_bit`](Difference::eight_bit); no other number here knows of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
     /// Pairs of samples.
@@ -122,7 +125,8 @@ impl Difference {
         self.mean(self.sum_of_abs)
     }
 
-    /// The peak signal-to-noise ratio in dB, the peak being 1, a display's white; infinite where there is no error.
+    /// The peak signal-to-noise ratio in dB, the peak being 1, a display's white; infinite where
+    /// there is no error.
     pub fn psnr(&self) -> f64 {
         -10.0 * libm::log10(self.mean(self.sum_of_squares))
     }

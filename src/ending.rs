@@ -1,5 +1,5 @@
-//! How the program ends before its time: for want of memory, through a fault, on a signal. It says one line at most, leaves no file that
-//! is not whole, and comes back to nobody.
+//! How the program ends before its time: for want of memory, through a fault, on a signal. It says
+//! one line at most, leaves no file that is not whole, and comes back to nobody.
 
 mod memory;
 #[cfg(unix)]
@@ -28,7 +28,8 @@ pub(crate) fn prepare() {
 /// Ends the program, with status 1.
 pub(crate) fn at_once() -> ! {
     abandon_unfinished();
-    // What other threads do, drivers' among them, is not waited for, and no code of theirs is run: any of it might hang.
+    // What other threads do, drivers' among them, is not waited for, and no code of theirs is run:
+    // any of it might hang.
     #[cfg(unix)]
     signal_hook::low_level::exit(1);
     #[cfg(not(unix))]
@@ -51,7 +52,8 @@ fn only_once() {
     }
 }
 
-/// What happens on a panic that nobody catches: a line, and the way there if RUST_BACKTRACE asks for it.
+/// What happens on a panic that nobody catches: a line, and the way there if RUST_BACKTRACE asks
+/// for it.
 fn fault(panic: &PanicHookInfo<'_>) {
     if fault::is_caught() {
         return;

@@ -8,12 +8,14 @@ thread_local! {
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic on this thread would be caught now and become an error: a panic hook need not print it.
+/// Whether a panic on this thread would be caught now and become an error: a panic hook need not
+/// print it.
 pub fn is_caught() -> bool {
     CAUGHT.get()
 }
 
-/// What `call` returns, or what it panics with, in one line. What `call` has changed must not be used after a panic.
+/// What `call` returns, or what it panics with, in one line. What `call` has changed must not be
+/// used after a panic.
 pub(crate) fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     let outer = CAUGHT.replace(true);
     let result = catch_unwind(AssertUnwindSafe(call));

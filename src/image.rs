@@ -23,14 +23,17 @@ pub use unfinished::abandon_unfinished;
 /// The largest number of pixels along a side.
 pub const MAX_SIZE: u32 = 16384;
 
-/// A square picture of N × N pixels, each red, green and blue as linear floats: not clamped, not gamma-encoded.
+/// A square picture of N × N pixels, each red, green and blue as linear floats: not clamped, not
+/// gamma-encoded.
 ///
-/// Rows go from the **bottom** to the top, as `glDrawPixels` and `glTexSubImage2D` lay them out; a row goes from left to right.
+/// Rows go from the **bottom** to the top, as `glDrawPixels` and `glTexSubImage2D` lay them out; a
+/// row goes from left to right.
 #[derive(Clone)]
 pub struct Image {
     size: u32,
     samples: Vec<f32>,
-    /// The number of the frame that a tracer has left here, to trace the next one over it; 0 after anyone else could write.
+    /// The number of the frame that a tracer has left here, to trace the next one over it; 0 after
+    /// anyone else could write.
     frame: u64,
 }
 
@@ -56,7 +59,8 @@ impl Image {
     /// A black picture of `size` × `size` pixels.
     ///
     /// # Errors
-    /// [`ImageError::Size`] unless 1 ≤ `size` ≤ [`MAX_SIZE`], [`ImageError::Memory`] where the floats do not fit.
+    /// [`ImageError::Size`] unless 1 ≤ `size` ≤ [`MAX_SIZE`], [`ImageError::Memory`] where the
+    /// floats do not fit.
     pub fn new(size: u32) -> Result<Image, ImageError> {
         if !(1..=MAX_SIZE).contains(&size) {
             return Err(ImageError::Size(size));
@@ -99,7 +103,8 @@ impl Image {
         &mut self.samples
     }
 
-    /// Red, green and blue at `column` from the left and `row` from the bottom; `None` outside the picture.
+    /// Red, green and blue at `column` from the left and `row` from the bottom; `None` outside the
+    /// picture.
     pub fn pixel(&self, column: u32, row: u32) -> Option<[f32; 3]> {
         if column >= self.size || row >= self.size {
             return None;
@@ -118,7 +123,8 @@ impl Image {
     }
 }
 
-/// The byte that a display of 8 bits shows for `sample`: round(255 · clamp(sample, 0, 1)), computed in f32, ties to even; 0 for a NaN.
+/// The byte that a display of 8 bits shows for `sample`: round(255 · clamp(sample, 0, 1)), computed
+/// in f32, ties to even; 0 for a NaN.
 ///
 /// It is what OpenGL writes into an RGBA8 framebuffer, and what a PNG holds.
 ///

@@ -1,5 +1,5 @@
-//! A **scene** seen at angle **α** in a **stage** is traced by a **kernel** into an **image**, and the image goes to a **screen** (a
-//! window, or offscreen) or into a **file**.
+//! A **scene** seen at angle **α** in a **stage** is traced by a **kernel** into an **image**, and
+//! the image goes to a **screen** (a window, or offscreen) or into a **file**.
 //!
 //! ```
 //! use firsthit::{Image, Kernel, Scene, Stage, Tracer};
@@ -19,8 +19,8 @@
 //!
 //! # From scene to screen
 //!
-//! Each bold word above is one type and one place, and each place knows only those before it: the tracer knows no OpenGL, the
-//! screen knows no spheres.
+//! Each bold word above is one type and one place, and each place knows only those before it: the
+//! tracer knows no OpenGL, the screen knows no spheres.
 //!
 //! | place | what is there |
 //! | --- | --- |
@@ -44,8 +44,8 @@
 //!
 //! # Features
 //!
-//! Who wants pictures only turns the default off: what is left knows no OpenGL, no window and no command line, and is less
-//! than half of the crates to build.
+//! Who wants pictures only turns the default off: what is left knows no OpenGL, no window and no
+//! command line, and is less than half of the crates to build.
 //!
 //! | feature | what it adds |
 //! | --- | --- |
@@ -54,22 +54,27 @@
 //!
 //! # What the picture is
 //!
-//! The picture is a mathematical function of scene, stage, α and N. An eye ray through the pixel (x, y) is the line through
-//! e = (sin α + u cos α, v, cos α − u sin α) along −w, with u = (x − N/2)/(N/2), v = (y − N/2)/(N/2) and w = (sin α, 3/10, cos α); sine and
-//! cosine are those of the f64 α taken exactly, and every number of a scene is its f64 taken exactly. What the ray meets first,
-//! whether a point is in shadow, what the surface mirrors: these are signs of real numbers, and touching counts as meeting. A
-//! sample is the real number that equation 4-1 gives, rounded once to the nearest f32. [`Kernel::Exact`] returns just that, on every
-//! machine, with any vector instructions and any number of threads.
+//! The picture is a mathematical function of scene, stage, α and N. An eye ray through the pixel
+//! (x, y) is the line through e = (sin α + u cos α, v, cos α − u sin α) along −w, with u = (x −
+//! N/2)/(N/2), v = (y − N/2)/(N/2) and w = (sin α, 3/10, cos α); sine and cosine are those of the
+//! f64 α taken exactly, and every number of a scene is its f64 taken exactly. What the ray meets
+//! first, whether a point is in shadow, what the surface mirrors: these are signs of real numbers,
+//! and touching counts as meeting. A sample is the real number that equation 4-1 gives, rounded
+//! once to the nearest f32. [`Kernel::Exact`] returns just that, on every machine, with any vector
+//! instructions and any number of threads.
 //!
 //! # What was left out, and why
 //!
-//! - No epsilon: a solid is convex, so it is never tested against itself, and what coincides is decided exactly.
-//! - No general ray tracer: projection is parallel, light comes from one direction, the surface mirrors once. What the scene
-//!   does not need is not modelled.
-//! - No platform libm: sines and cosines are correctly rounded, highlights use arithmetic only, or `libm` in plain Rust.
-//! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which nothing but what is certain gets into a
-//!   picture, uses it where the processor has it.
-//! - No tree over the solids: rays are parallel, so every solid knows the rows and columns that it can touch.
+//! - No epsilon: a solid is convex, so it is never tested against itself, and what coincides is
+//!   decided exactly.
+//! - No general ray tracer: projection is parallel, light comes from one direction, the surface
+//!   mirrors once. What the scene does not need is not modelled.
+//! - No platform libm: sines and cosines are correctly rounded, highlights use arithmetic only, or
+//!   `libm` in plain Rust.
+//! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which
+//!   nothing but what is certain gets into a picture, uses it where the processor has it.
+//! - No tree over the solids: rays are parallel, so every solid knows the rows and columns that it
+//!   can touch.
 
 pub mod camera;
 pub mod difference;

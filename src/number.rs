@@ -1,4 +1,5 @@
-//! The abstract number that every formula is written over, and the numbers that kernels are made of.
+//! The abstract number that every formula is written over, and the numbers that kernels are made
+//! of.
 
 #[cfg(test)]
 mod agreement;
@@ -24,7 +25,8 @@ pub(crate) struct Doubt;
 
 /// A real number as a kernel holds it: exactly, roughly, or within known bounds.
 ///
-/// A kernel is a choice of number and of what to do when that number cannot tell a sign or a rounding: its *doubt*.
+/// A kernel is a choice of number and of what to do when that number cannot tell a sign or a
+/// rounding: its *doubt*.
 pub(crate) trait Real:
     Copy
     + Neg<Output = Self>
@@ -33,7 +35,8 @@ pub(crate) trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
 {
-    /// What is returned in place of an answer that this number cannot give; [`Infallible`] where it always answers.
+    /// What is returned in place of an answer that this number cannot give; [`Infallible`] where it
+    /// always answers.
     type Doubt;
 
     /// The value of an f64, taken exactly.
@@ -47,8 +50,8 @@ pub(crate) trait Real:
 
     /// (1 − self)ⁿ, and 0 from self = 1 on.
     ///
-    /// A highlight is (n·h)ⁿ with n near 1000, which would multiply the relative error of n·h by n. What a formula knows
-    /// well is 1 − n·h, so that is what it hands over.
+    /// A highlight is (n·h)ⁿ with n near 1000, which would multiply the relative error of n·h by n.
+    /// What a formula knows well is 1 − n·h, so that is what it hands over.
     fn one_minus_to_the(self, exponent: u32) -> Self;
 
     /// Less than, equal to or greater than 0.
@@ -57,7 +60,8 @@ pub(crate) trait Real:
     /// Rounded to the nearest f32, ties to even; a zero is +0.
     fn to_sample(self) -> Result<f32, Self::Doubt>;
 
-    /// The same number, given what else is known about it: for a kind of number that can make use of that.
+    /// The same number, given what else is known about it: for a kind of number that can make use
+    /// of that.
     fn or_better(self, _known: DoubleDouble) -> Self {
         self
     }
@@ -92,13 +96,15 @@ impl Real for f64 {
         if self >= 1.0 {
             return 0.0;
         }
-        // libm is Rust code throughout: the same bits on every platform, within an ulp of log1p and of exp.
+        // libm is Rust code throughout: the same bits on every platform, within an ulp of log1p and
+        // of exp.
         libm::exp(f64::from(exponent) * libm::log1p(-self))
     }
 
     #[inline]
     fn sign(self) -> Result<Ordering, Infallible> {
-        // A NaN cannot come up: a scene's numbers are finite and far from overflow, and nothing divides by 0.
+        // A NaN cannot come up: a scene's numbers are finite and far from overflow, and nothing
+        // divides by 0.
         Ok(self.partial_cmp(&0.0).unwrap_or(Ordering::Equal))
     }
 
@@ -146,7 +152,8 @@ impl Real for f32 {
 
     #[inline]
     fn to_sample(self) -> Result<f32, Infallible> {
-        // A NaN or an infinity from numbers that 24 bits or their exponents cannot hold is no sample, and a zero is +0.
+        // A NaN or an infinity from numbers that 24 bits or their exponents cannot hold is no
+        // sample, and a zero is +0.
         Ok(if self > 0.0 { self.min(f32::MAX) } else { 0.0 })
     }
 
@@ -164,7 +171,8 @@ fn round_enclosure(lower: f32, upper: f32) -> Option<f32> {
 fn round_sum(high: f64, low: f64) -> f32 {
     let rounded = high as f32;
     let between = high - f64::from(rounded);
-    // Only where high itself is halfway between two f32s, or on one, does low have a say: halfway it breaks the tie.
+    // Only where high itself is halfway between two f32s, or on one, does low have a say: halfway
+    // it breaks the tie.
     let neighbour = if between > 0.0 {
         rounded.next_up()
     } else {

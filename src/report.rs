@@ -1,12 +1,15 @@
 //! Speed against error: how fast each kernel is, and how far from the truth.
 //!
-//! Errors are measured against [`Kernel::Reference`], decisions as decisions and samples as samples, over all frames. An error in
-//! f32 steps counts the floats from a sample to the true value correctly rounded, so 0 is a correctly rounded sample, whose distance
-//! from the real number itself is at most ½; the largest and the mean are over pixels whose decision is right, since a wrong decision is
-//! an error of another kind. Absolute errors and 8-bit differences are over all pixels.
+//! Errors are measured against [`Kernel::Reference`], decisions as decisions and samples as
+//! samples, over all frames. An error in f32 steps counts the floats from a sample to the true
+//! value correctly rounded, so 0 is a correctly rounded sample, whose distance from the real number
+//! itself is at most ½; the largest and the mean are over pixels whose decision is right, since a
+//! wrong decision is an error of another kind. Absolute errors and 8-bit differences are over all
+//! pixels.
 //!
-//! A sample of time is a whole round of frames, divided by filling the same picture with one colour as often, by the fastest stores
-//! there are; both alternate, so that a slow moment of the machine hits both.
+//! A sample of time is a whole round of frames, divided by filling the same picture with one colour
+//! as often, by the fastest stores there are; both alternate, so that a slow moment of the machine
+//! hits both.
 
 mod errors;
 mod fill;
@@ -169,8 +172,9 @@ fn cores() -> usize {
 
 /// Measures the kernels as requested, and tells `progress` before each step.
 ///
-/// What it costs to display a frame is measured by [`Report::measure_pipelines`], afterwards: OpenGL drivers are not ours, and one that
-/// ends the process takes nothing along that was not shown before.
+/// What it costs to display a frame is measured by [`Report::measure_pipelines`], afterwards:
+/// OpenGL drivers are not ours, and one that ends the process takes nothing along that was not
+/// shown before.
 ///
 /// # Errors
 /// [`ReportError`] where there is no room for the pictures, or no threads.
@@ -193,7 +197,8 @@ pub fn measure(
         threads,
         image: Image::new(request.size)?,
         truth: Image::new(request.size)?,
-        // A frame traced for its errors is 1; a row of times takes at least three rounds for each number of threads.
+        // A frame traced for its errors is 1; a row of times takes at least three rounds for each
+        // number of threads.
         steps: Steps {
             done: 0,
             of: (views * angles.len() * (1 + request.kernels.len() * (1 + 3 * counts.len())))
@@ -360,7 +365,8 @@ pub fn save(text: &str, path: impl AsRef<Path>) -> Result<(), SaveError> {
     WholeFile::write(path.as_ref(), |output| output.write_all(text.as_bytes()))
 }
 
-/// Whether a file can be written at `path`: better known before hours of measuring than after. Nothing is left there.
+/// Whether a file can be written at `path`: better known before hours of measuring than after.
+/// Nothing is left there.
 ///
 /// # Errors
 /// As [`save`].
@@ -369,8 +375,9 @@ pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
 }
 
 impl Report {
-    /// Measures what it costs to display a frame. `watch` is called with `true` before a driver does something for the first time, and
-    /// with `false` after it: a driver may never come back.
+    /// Measures what it costs to display a frame. `watch` is called with `true` before a driver
+    /// does something for the first time, and with `false` after it: a driver may never come
+    /// back.
     ///
     /// # Errors
     /// As [`measure`]; where no driver can be had, that is told in [`Report::pipelines`].

@@ -61,8 +61,8 @@ pub struct Light {
 }
 
 impl Light {
-    /// The direction, times the power of two that makes its largest component at least 1 and less than 2: exactly the
-    /// same direction, and its square neither overflows nor underflows.
+    /// The direction, times the power of two that makes its largest component at least 1 and less
+    /// than 2: exactly the same direction, and its square neither overflows nor underflows.
     pub(crate) fn scaled_direction(&self) -> DVec3 {
         let exponent = libm::ilogb(self.direction.abs().max_element());
         DVec3::from_array(
@@ -86,7 +86,8 @@ pub struct Material {
     pub exponent: u32,
 }
 
-/// A scene that keeps every rule of the file format: made by [`Scene::builtin`] or [`Scene::from_toml`] only.
+/// A scene that keeps every rule of the file format: made by [`Scene::builtin`] or
+/// [`Scene::from_toml`] only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     background: DVec3,
@@ -115,8 +116,9 @@ impl Scene {
 
     /// Reads a scene file.
     ///
-    /// What the text leaves out is as in the built-in scene: `background`, `[light]`, `[material]`, `surface.color` and
-    /// `surface.reflectance`, whole or in part. Geometry cannot be left out, and without `[surface]` there is none.
+    /// What the text leaves out is as in the built-in scene: `background`, `[light]`, `[material]`,
+    /// `surface.color` and `surface.reflectance`, whole or in part. Geometry cannot be left
+    /// out, and without `[surface]` there is none.
     ///
     /// ```
     /// use firsthit::Scene;
@@ -128,11 +130,12 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// A text that is not TOML; an unknown key; a missing field; a NaN or an infinity; a coordinate or height that is
-    /// neither 0 nor of magnitude 1e-30 to 1e6; a radius or half width outside of that range; a colour, intensity,
-    /// coefficient or reflectance that is neither 0 nor within it; a flat tetrahedron; a light direction of 0, or with
-    /// components that differ by more than a factor 1e30; an exponent that is not a whole number from 1 to 1 000 000; more
-    /// than [`MAX_SOLIDS`] solids.
+    /// A text that is not TOML; an unknown key; a missing field; a NaN or an infinity; a coordinate
+    /// or height that is neither 0 nor of magnitude 1e-30 to 1e6; a radius or half width
+    /// outside of that range; a colour, intensity, coefficient or reflectance that is neither 0
+    /// nor within it; a flat tetrahedron; a light direction of 0, or with components that
+    /// differ by more than a factor 1e30; an exponent that is not a whole number from 1 to 1 000
+    /// 000; more than [`MAX_SOLIDS`] solids.
     pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
         file::read(text, Some(&Scene::builtin()))
     }

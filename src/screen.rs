@@ -1,11 +1,14 @@
-//! The way of a picture to the screen: uploaded as one retained texture, drawn on one quad, pixel for pixel.
+//! The way of a picture to the screen: uploaded as one retained texture, drawn on one quad, pixel
+//! for pixel.
 //!
-//! A [`Screen`] is the texture and the quad in whatever OpenGL 3.3 core context is current: a window's, or one of the contexts without a
-//! window that [`Offscreen`] makes to read the drawn picture back. A [`Placement`] says where in the window the picture lies.
+//! A [`Screen`] is the texture and the quad in whatever OpenGL 3.3 core context is current: a
+//! window's, or one of the contexts without a window that [`Offscreen`] makes to read the drawn
+//! picture back. A [`Placement`] says where in the window the picture lies.
 //!
-//! Samples stay the 32-bit floats that were traced: the texture is `RGB32F`, the shader fetches texels without filtering, and nothing
-//! blends, dithers or encodes them, so a float framebuffer holds them bit for bit and an 8-bit one holds
-//! `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
+//! Samples stay the 32-bit floats that were traced: the texture is `RGB32F`, the shader fetches
+//! texels without filtering, and nothing blends, dithers or encodes them, so a float framebuffer
+//! holds them bit for bit and an 8-bit one holds `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL
+//! leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
 //! all their bits, those of signalling NaNs too.
 
 #[cfg(feature = "program")]
@@ -43,7 +46,8 @@ pub use placement::Placement;
 use program::Program;
 pub use timed::{Cost, Path, TimedScreen};
 
-/// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let the desktop shine through.
+/// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let
+/// the desktop shine through.
 const CLEAR_COLOR: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
 
 /// What changes fragments on their way into the framebuffer, or keeps them out.
@@ -60,8 +64,8 @@ const FRAGMENT_CAPABILITIES: [u32; 8] = [
 
 /// The retained texture and the quad that shows it.
 ///
-/// Every method, and the drop, needs the context of [`Screen::new`] to be current on this thread: that is what its caller promises. Each
-/// sets all state it relies on and restores none.
+/// Every method, and the drop, needs the context of [`Screen::new`] to be current on this thread:
+/// that is what its caller promises. Each sets all state it relies on and restores none.
 pub struct Screen {
     gl: Rc<glow::Context>,
     program: Program,
@@ -74,15 +78,17 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// A screen for pictures of `size` × `size` pixels in the OpenGL 3.3 core context that is current and whose functions are `gl`.
+    /// A screen for pictures of `size` × `size` pixels in the OpenGL 3.3 core context that is
+    /// current and whose functions are `gl`.
     ///
     /// # Errors
-    /// [`ScreenError::Image`] where there is no picture of that size, [`ScreenError::TextureTooLarge`] and [`ScreenError::Memory`] where
-    /// it is beyond the driver, [`ScreenError::Refused`] where the driver refuses the shaders or the texture.
+    /// [`ScreenError::Image`] where there is no picture of that size,
+    /// [`ScreenError::TextureTooLarge`] and [`ScreenError::Memory`] where it is beyond the
+    /// driver, [`ScreenError::Refused`] where the driver refuses the shaders or the texture.
     ///
     /// # Safety
-    /// `gl` holds the functions of the context that is current on this thread. The same context is current again whenever a method of the
-    /// screen is called, and when the screen is dropped.
+    /// `gl` holds the functions of the context that is current on this thread. The same context is
+    /// current again whenever a method of the screen is called, and when the screen is dropped.
     pub unsafe fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
         if !(1..=MAX_SIZE).contains(&size) {
             return Err(ImageError::Size(size).into());
@@ -130,7 +136,8 @@ impl Screen {
                 glow::FLOAT,
                 glow::PixelUnpackData::Slice(None),
             );
-            // One level: the texture is complete, and so may be fetched from, whatever filter or sampler is set.
+            // One level: the texture is complete, and so may be fetched from, whatever filter or
+            // sampler is set.
             gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, 0);
         }
         check(gl, "a texture of 32-bit floats", self.size)
@@ -139,14 +146,15 @@ impl Screen {
     /// Replaces the texture's texels by the samples of `image`.
     ///
     /// # Errors
-    /// [`ScreenError::Size`] unless `image` has the size of the screen, [`ScreenError::Memory`] and [`ScreenError::Refused`] where the
-    /// driver cannot take it.
+    /// [`ScreenError::Size`] unless `image` has the size of the screen, [`ScreenError::Memory`] and
+    /// [`ScreenError::Refused`] where the driver cannot take it.
     pub fn upload(&mut self, image: &Image) -> Result<(), ScreenError> {
         self.upload_rows(image, 0..self.size)
     }
 
-    /// Replaces some rows of texels, counted from the bottom, by those of `image`: after [`Tracer::retrace`](crate::Tracer::retrace)
-    /// over a picture that was uploaded, the rows that it returns. Rows that the picture does not have are left out.
+    /// Replaces some rows of texels, counted from the bottom, by those of `image`: after
+    /// [`Tracer::retrace`](crate::Tracer::retrace) over a picture that was uploaded, the rows
+    /// that it returns. Rows that the picture does not have are left out.
     ///
     /// # Errors
     /// As [`Screen::upload`].
@@ -165,8 +173,9 @@ impl Screen {
         let samples = &image.samples()[rows.start as usize * width..rows.end as usize * width];
         let gl = &self.gl;
         set_unpacking(gl);
-        // SAFETY: the context is current, and the texture has these rows. With these pixel-store parameters and no buffer bound, the
-        // driver reads exactly as many rows of size × 3 floats, and so many the samples are.
+        // SAFETY: the context is current, and the texture has these rows. With these pixel-store
+        // parameters and no buffer bound, the driver reads exactly as many rows of size × 3
+        // floats, and so many the samples are.
         unsafe {
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.tex_sub_image_2d(
@@ -184,8 +193,9 @@ impl Screen {
         check(gl, "to take the picture as a texture", self.size)
     }
 
-    /// Clears the bound framebuffer, `surface` wide and high in pixels, and draws the picture into `placement` by nearest neighbour: of
-    /// the E pixels along a side, pixel p shows the picture's ⌊(p + ½) N / E⌋, exactly, as long as N E is less than 2³¹.
+    /// Clears the bound framebuffer, `surface` wide and high in pixels, and draws the picture into
+    /// `placement` by nearest neighbour: of the E pixels along a side, pixel p shows the
+    /// picture's ⌊(p + ½) N / E⌋, exactly, as long as N E is less than 2³¹.
     pub fn draw(&self, surface: UVec2, placement: Placement) {
         let gl = &self.gl;
         let origin = placement.origin.as_i64vec2();
@@ -193,7 +203,8 @@ impl Screen {
         let start = origin.max(I64Vec2::ZERO);
         let visible = (corner - start).max(I64Vec2::ZERO).as_ivec2();
         let start = start.as_ivec2();
-        // SAFETY: the context is current and all names are of it; the vertex shader reads no buffer.
+        // SAFETY: the context is current and all names are of it; the vertex shader reads no
+        // buffer.
         unsafe {
             for capability in FRAGMENT_CAPABILITIES {
                 gl.disable(capability);
@@ -219,8 +230,8 @@ impl Screen {
         }
     }
 
-    /// Fills a rectangle of the bound framebuffer, over what was drawn there. `corner` is its bottom
-    /// left pixel, `size` its width and height.
+    /// Fills a rectangle of the bound framebuffer, over what was drawn there. `corner` is its
+    /// bottom left pixel, `size` its width and height.
     #[cfg(feature = "program")]
     pub(crate) fn fill(&self, corner: glam::IVec2, size: UVec2, [red, green, blue]: [u8; 3]) {
         let color = [red, green, blue].map(|byte| f32::from(byte) / 255.0);
@@ -245,7 +256,8 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // SAFETY: both names were made here and nothing else deletes them; the program frees itself.
+        // SAFETY: both names were made here and nothing else deletes them; the program frees
+        // itself.
         unsafe {
             self.gl.delete_texture(self.texture);
             self.gl.delete_vertex_array(self.vertex_array);
@@ -270,7 +282,8 @@ fn set_unpacking(gl: &glow::Context) {
     }
 }
 
-/// The driver's oldest error since the last check, if any, as what kept it from doing `what` for a picture of `size` × `size` pixels.
+/// The driver's oldest error since the last check, if any, as what kept it from doing `what` for a
+/// picture of `size` × `size` pixels.
 fn check(gl: &glow::Context, what: &'static str, size: u32) -> Result<(), ScreenError> {
     // SAFETY: the context is current.
     match unsafe { gl.get_error() } {

@@ -1,12 +1,14 @@
 //! Scene, stage and α in; image out.
 //!
-//! Every formula of the picture is written once, over an abstract number (`number.rs`). A [`Kernel`] is a
-//! choice of that number, and of what is done where it is in doubt. To be read in this order:
+//! Every formula of the picture is written once, over an abstract number (`number.rs`). A
+//! [`Kernel`] is a choice of that number, and of what is done where it is in doubt. To be read in
+//! this order:
 //!
 //! - `frame`, `view`: the scene turned by α and measured in pixels, and its mirror image;
 //! - `line`, `sphere`, `tetrahedron`, `surface`: a ray and what it meets; `shading`: equation 4-1;
 //! - `pixel`: what a pixel shows, from these: the definition of the picture;
-//! - `ladder`: the same asked of f64 with bounds, then of double-doubles, then of arbitrary precision;
+//! - `ladder`: the same asked of f64 with bounds, then of double-doubles, then of arbitrary
+//!   precision;
 //! - `scanline`: the same again for whole rows at once, which makes nearly every pixel;
 //! - `listing`: the document's own way, slips included, by itself;
 //! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words.
@@ -64,8 +66,9 @@ fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Ru
     (pixels.explain(column, row, traced), rung)
 }
 
-/// RowTracer are handed to threads in bands of so many: those that are crossed at once, so that no two threads cross the same. They are few
-/// enough that the last band of one is not long waited for by the others, and so many that claiming them costs nothing beside that.
+/// RowTracer are handed to threads in bands of so many: those that are crossed at once, so that no
+/// two threads cross the same. They are few enough that the last band of one is not long waited for
+/// by the others, and so many that claiming them costs nothing beside that.
 const BAND: usize = ROWS;
 
 /// Traces pictures: made once, used for any number of frames.
@@ -86,7 +89,8 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// A tracer with `threads` threads, the caller's among them; 0 is one a core. Their number changes no bit of a picture.
+    /// A tracer with `threads` threads, the caller's among them; 0 is one a core. Their number
+    /// changes no bit of a picture.
     ///
     /// # Errors
     /// [`TraceError::Threads`] where the system refuses the threads.
@@ -106,7 +110,8 @@ impl Tracer {
         })
     }
 
-    /// The same tracer, confined to these vector instructions. The kernels that go pixel by pixel use none.
+    /// The same tracer, confined to these vector instructions. The kernels that go pixel by pixel
+    /// use none.
     pub fn with_simd(self, simd: Simd) -> Tracer {
         Tracer { simd, ..self }
     }
@@ -121,7 +126,8 @@ impl Tracer {
         self.kernel
     }
 
-    /// How many pixels of the frame traced last were in doubt; none for a kernel that knows no doubt.
+    /// How many pixels of the frame traced last were in doubt; none for a kernel that knows no
+    /// doubt.
     pub fn in_doubt(&self) -> InDoubt {
         self.in_doubt
     }
@@ -134,8 +140,9 @@ impl Tracer {
     /// Traces `scene` in `stage`, seen at angle `alpha` in radians, into the whole of `image`.
     ///
     /// # Errors
-    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Listing`] where the kernel is [`Kernel::Listing`] and the
-    /// scene not of the document's shape; the image is left as it was.
+    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Listing`] where the kernel
+    /// is [`Kernel::Listing`] and the scene not of the document's shape; the image is left as
+    /// it was.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -146,10 +153,12 @@ impl Tracer {
         self.trace_frame(scene, stage, alpha, image, None, Extent::Whole)
     }
 
-    /// The same picture, into an image that may hold the frame that this tracer left there before: what has not changed is not
-    /// written again. An image that holds anything else is written whole.
+    /// The same picture, into an image that may hold the frame that this tracer left there before:
+    /// what has not changed is not written again. An image that holds anything else is written
+    /// whole.
     ///
-    /// Returns rows, counted from the bottom, outside of which nothing was written; none where nothing was at all.
+    /// Returns rows, counted from the bottom, outside of which nothing was written; none where
+    /// nothing was at all.
     ///
     /// ```
     /// use firsthit::{Image, Kernel, Scene, Stage, Tracer};
@@ -186,7 +195,8 @@ impl Tracer {
             .map_or(0..0, |(first, last)| first as u32..last as u32 + 1))
     }
 
-    /// As [`Tracer::trace`], and what was decided for each pixel: N² decisions, rows from the bottom.
+    /// As [`Tracer::trace`], and what was decided for each pixel: N² decisions, rows from the
+    /// bottom.
     ///
     /// # Errors
     /// As [`Tracer::trace`].
@@ -209,11 +219,13 @@ impl Tracer {
         Ok(decisions)
     }
 
-    /// One pixel, worked through for a person to read: the rays, what they meet and what that beat, the decisions and the
-    /// arithmetic that settled them, each term of equation 4-1, the samples. It comes from the code that traces.
+    /// One pixel, worked through for a person to read: the rays, what they meet and what that beat,
+    /// the decisions and the arithmetic that settled them, each term of equation 4-1, the
+    /// samples. It comes from the code that traces.
     ///
     /// # Errors
-    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of `size` has no such pixel.
+    /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of
+    /// `size` has no such pixel.
     pub fn explain(
         &self,
         scene: &Scene,
@@ -420,7 +432,8 @@ impl Tracer {
         })
     }
 
-    /// Traces bands of rows on all threads, or all rows as one on one thread: `trace` gets the number of a band's first row, and where the band goes.
+    /// Traces bands of rows on all threads, or all rows as one on one thread: `trace` gets the
+    /// number of a band's first row, and where the band goes.
     fn each_band(
         &mut self,
         target: Target<'_>,

@@ -1,8 +1,9 @@
 //! The window: one picture, redrawn when the angle moves or the window asks.
 //!
-//! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place: the keys are one table
-//! ([`key_table`]), α is a clock of its own that knows no window, the window knows no scene, pictures are traced on a thread of their own,
-//! and the application between them asks for one only when stage or α changed.
+//! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place:
+//! the keys are one table ([`key_table`]), α is a clock of its own that knows no window, the window
+//! knows no scene, pictures are traced on a thread of their own, and the application between them
+//! asks for one only when stage or α changed.
 
 mod action;
 mod app;
@@ -61,11 +62,13 @@ pub struct Options {
     pub threads: usize,
     /// How stage 7 advances.
     pub pace: Pace,
-    /// Leave after so many frames, at least one; a static stage is then drawn again and again until it has had them.
+    /// Leave after so many frames, at least one; a static stage is then drawn again and again
+    /// until it has had them.
     pub exit_after_frames: Option<u64>,
 }
 
-/// Something that a person at the terminal may want to know, as a line of text, or some, by [`fmt::Display`].
+/// Something that a person at the terminal may want to know, as a line of text, or some, by
+/// [`fmt::Display`].
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
@@ -152,13 +155,14 @@ impl fmt::Display for Counts {
     }
 }
 
-/// Opens the viewer and stays until it is left. `report` is told what happens, on the calling thread.
+/// Opens the viewer and stays until it is left. `report` is told what happens, on the calling
+/// thread.
 ///
 /// A process can do this once. On macOS and Windows it must be the main thread that does.
 ///
 /// # Errors
-/// [`ViewerError`] where no window can be opened, or the display goes away. Where an X server does, Xlib leaves no way back: a line on
-/// standard error, and the process ends with status 1.
+/// [`ViewerError`] where no window can be opened, or the display goes away. Where an X server does,
+/// Xlib leaves no way back: a line on standard error, and the process ends with status 1.
 ///
 /// # Panics
 /// On macOS and Windows, where the calling thread is not the main thread.

@@ -1,10 +1,12 @@
-//! Promise: on one thread a frame asks the system for no memory, once the tracer has seen frames like it.
+//! Promise: on one thread a frame asks the system for no memory, once the tracer has seen frames
+//! like it.
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use allocation_counter::measure;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer, camera};
 
-/// How often each frame of an animation allocates: when it is the first of its round, and when all have been traced twice.
+/// How often each frame of an animation allocates: when it is the first of its round, and when all
+/// have been traced twice.
 fn allocations(
     scene: &Scene,
     (stage, kernel): (Stage, Kernel),

@@ -23,7 +23,8 @@ fn done(folder: &TempDir, line: &str) {
     assert_eq!(printed(folder, line), "", "{line}");
 }
 
-/// What it said on standard error; it must have failed in one line, with nothing on standard output.
+/// What it said on standard error; it must have failed in one line, with nothing on standard
+/// output.
 fn failed(output: &Output, what: &str) -> String {
     assert_eq!(text(&output.stdout), "", "{what}");
     helpers::failed(output, 1, what)
@@ -363,7 +364,8 @@ fn a_link_is_followed_but_what_is_no_file_stays() {
     fs::create_dir(at("elsewhere")).unwrap();
     fs::write(at("elsewhere/old"), "old").unwrap();
     symlink("elsewhere/old", at("link.png")).unwrap();
-    // In place of a device: where this fails for an administrator, it must not be at the cost of a real one.
+    // In place of a device: where this fails for an administrator, it must not be at the cost of a
+    // real one.
     let _socket = UnixListener::bind(at("elsewhere/socket")).unwrap();
     symlink("elsewhere/socket", at("socket.png")).unwrap();
     let line = "capture --stage 6 --size 8 --through none -o";

@@ -1,4 +1,5 @@
-//! Promise: a report names the commit that the program was built from, and nothing is run to find it out, neither then nor later.
+//! Promise: a report names the commit that the program was built from, and nothing is run to find
+//! it out, neither then nor later.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;

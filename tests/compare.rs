@@ -1,4 +1,5 @@
-//! Promise: `firsthit compare` says how far two pictures are apart, hides no NaN, and fails beyond its threshold.
+//! Promise: `firsthit compare` says how far two pictures are apart, hides no NaN, and fails beyond
+//! its threshold.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -38,7 +39,8 @@ fn line<'a>(text: &'a str, name: &str) -> &'a str {
         .trim()
 }
 
-/// A picture of 4 × 4 pixels, all samples 0.5 but those of `changes`: the place of a sample, and what it is.
+/// A picture of 4 × 4 pixels, all samples 0.5 but those of `changes`: the place of a sample, and
+/// what it is.
 fn picture(changes: &[(usize, f32)]) -> Image {
     let mut image = Image::new(4).unwrap();
     image.samples_mut().fill(0.5);

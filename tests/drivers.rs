@@ -1,4 +1,5 @@
-//! Promise: no OpenGL driver is trusted. What one gets wrong is an error that names the pixel, and never a wrong file.
+//! Promise: no OpenGL driver is trusted. What one gets wrong is an error that names the pixel, and
+//! never a wrong file.
 
 use std::fs;
 use std::process::Output;

@@ -1,4 +1,5 @@
-//! Promise: no bytes break a promise. What fuzzing has tried is tried again: the files of the corpora, each by what `.ci/fuzz` runs.
+//! Promise: no bytes break a promise. What fuzzing has tried is tried again: the files of the
+//! corpora, each by what `.ci/fuzz` runs.
 
 #[cfg(feature = "program")]
 mod command_line;

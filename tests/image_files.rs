@@ -13,7 +13,8 @@ use firsthit::image::{LoadError, display_byte};
 
 use crate::helpers::{bits, exr_bits};
 
-/// NaNs with their payloads and signs, signed zeros, subnormals, infinities, and numbers that a half float would not hold.
+/// NaNs with their payloads and signs, signed zeros, subnormals, infinities, and numbers that a
+/// half float would not hold.
 const HARD: [u32; 12] = [
     0x7fc0_0000,
     0xffc0_1234,
@@ -116,7 +117,8 @@ fn write_halves(path: &Path, compression: Compression, blocks: Blocks) {
         .unwrap();
 }
 
-/// That of B44 and of DWA, which have halves in mind, panics or aborts on what the next test writes.
+/// That of B44 and of DWA, which have halves in mind, panics or aborts on what the next test
+/// writes.
 #[test]
 fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
     use Compression::{B44, B44A, DWAA, DWAB, PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
@@ -140,8 +142,9 @@ fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
     }
 }
 
-/// Of these files, the headers are sound and the only block is not: in that of B44, the first number of 16 is less than what is taken from it;
-/// that of DWA says that it has 2^63 − 1 coefficients.
+/// Of these files, the headers are sound and the only block is not: in that of B44, the first
+/// number of 16 is less than what is taken from it; that of DWA says that it has 2^63 − 1
+/// coefficients.
 #[test]
 fn no_decoder_sees_a_block_that_it_would_break_at() {
     let folder = tempfile::tempdir().unwrap();

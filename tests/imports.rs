@@ -1,10 +1,12 @@
-//! Promise: no file of the library imports one that imports it, in however many steps: it can be read from one end to the other.
+//! Promise: no file of the library imports one that imports it, in however many steps: it can be
+//! read from one end to the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// The library's files by the paths of their modules, but for those that are compiled for tests only.
+/// The library's files by the paths of their modules, but for those that are compiled for tests
+/// only.
 fn files() -> BTreeMap<String, String> {
     let mut files = BTreeMap::new();
     read(
@@ -103,7 +105,8 @@ fn paths(tree: &str) -> Vec<String> {
         .collect()
 }
 
-/// The module that a path in `module` leads to, and the name that it has there; `None` for other crates.
+/// The module that a path in `module` leads to, and the name that it has there; `None` for other
+/// crates.
 fn place(module: &str, path: &str, files: &BTreeMap<String, String>) -> Option<(String, String)> {
     let mut base: Vec<&str> = module.split("::").filter(|part| !part.is_empty()).collect();
     let mut parts = path.split("::").peekable();

@@ -1,4 +1,5 @@
-//! Promise: what the system refuses is one line and status 1, and what does not come is waited for aloud.
+//! Promise: what the system refuses is one line and status 1, and what does not come is waited for
+//! aloud.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};

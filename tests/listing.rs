@@ -1,5 +1,5 @@
-//! Promise: `listing` is the document's listings as printed. Each of their slips shows, just there and just as the equation
-//! predicts, and nothing else differs from the truth.
+//! Promise: `listing` is the document's listings as printed. Each of their slips shows, just there
+//! and just as the equation predicts, and nothing else differs from the truth.
 
 use firsthit::camera::{ROUND, frame_angle, sin_cos};
 use firsthit::tracer::{Decision, Seen, TraceError};
@@ -66,7 +66,8 @@ fn close(a: [f32; 3], b: [f32; 3]) -> bool {
     a.into_iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6)
 }
 
-/// A scene of the document's shape: these spheres (centre, radius), this tetrahedron, and TOML that goes before them.
+/// A scene of the document's shape: these spheres (centre, radius), this tetrahedron, and TOML that
+/// goes before them.
 fn scene(before: &str, spheres: [([f64; 3], f64); 2], vertices: [[f64; 3]; 4]) -> Scene {
     let mut text = format!("{before}\nsurface = {{ height = -0.5, half_width = 0.6875 }}\n");
     for (center, radius) in spheres {
@@ -126,8 +127,8 @@ fn spheres_are_seen_as_they_are() {
     }
 }
 
-/// Code 3-1 takes the root of smaller magnitude: behind the screen that is the last point along the ray. Where v = l, only
-/// the first is lit.
+/// Code 3-1 takes the root of smaller magnitude: behind the screen that is the last point along the
+/// ray. Where v = l, only the first is lit.
 #[test]
 fn a_sphere_behind_the_screen_shows_its_far_side() {
     let scene = scene(
@@ -148,8 +149,8 @@ fn a_sphere_behind_the_screen_shows_its_far_side() {
     }
 }
 
-/// Nothing asks for t > 0: a sphere under the surface casts a shadow up onto it and is mirrored in it. The only light that
-/// such a shadow could come from is below.
+/// Nothing asks for t > 0: a sphere under the surface casts a shadow up onto it and is mirrored in
+/// it. The only light that such a shadow could come from is below.
 #[test]
 fn what_lies_behind_a_ray_is_met() {
     let below = [0.0, -0.75, 0.5];
@@ -187,8 +188,8 @@ fn what_lies_behind_a_ray_is_met() {
     );
 }
 
-/// Code 3-2 is strict at edges: the line through (1000, 999) meets the edge between the faces 1 and 2, and goes on to the
-/// face behind them.
+/// Code 3-2 is strict at edges: the line through (1000, 999) meets the edge between the faces 1 and
+/// 2, and goes on to the face behind them.
 #[test]
 fn a_line_through_a_shared_edge_hits_neither_face() {
     let size = 1600;
@@ -202,7 +203,8 @@ fn a_line_through_a_shared_edge_hits_neither_face() {
     assert_eq!(faces(1001), [Some(2), Some(2)]);
 }
 
-/// Code 3-2 reads `distance` before it is set where the first triangle is missed: then nothing is hit.
+/// Code 3-2 reads `distance` before it is set where the first triangle is missed: then nothing is
+/// hit.
 #[test]
 fn a_tetrahedron_is_seen_through_its_first_face_only() {
     let [_, b, c, d] = Scene::builtin().tetrahedra()[0]
@@ -224,8 +226,8 @@ fn a_tetrahedron_is_seen_through_its_first_face_only() {
     );
 }
 
-/// Code 3-2 does not make the flag of one face false for the next: a missed face counts as hit at the origin of space, and
-/// is seen where that is nearer to the pixel than the tetrahedron.
+/// Code 3-2 does not make the flag of one face false for the next: a missed face counts as hit at
+/// the origin of space, and is seen where that is nearer to the pixel than the tetrahedron.
 #[test]
 fn a_face_missed_after_a_hit_counts_as_hit_at_the_origin() {
     let (scene, alpha) = (Scene::builtin(), frame_angle(10));
@@ -246,8 +248,8 @@ fn a_face_missed_after_a_hit_counts_as_hit_at_the_origin() {
     assert!(wrong > 10_000);
 }
 
-/// Code 3-2 divides by zero for a line along a face: a solid owns its faces, but here the point is a NaN, and even the first
-/// face, which every hit depends on, is missed.
+/// Code 3-2 divides by zero for a line along a face: a solid owns its faces, but here the point is
+/// a NaN, and even the first face, which every hit depends on, is missed.
 #[test]
 fn a_line_along_a_face_misses_it() {
     let scene = scene(
@@ -269,7 +271,8 @@ fn a_line_along_a_face_misses_it() {
     );
 }
 
-/// Code 5-1 hands LightDir to Equation 4-1: the truth under the opposite light, which comes from below.
+/// Code 5-1 hands LightDir to Equation 4-1: the truth under the opposite light, which comes from
+/// below.
 #[test]
 fn solids_are_lit_from_below() {
     let builtin = Scene::builtin();
@@ -315,7 +318,8 @@ fn shadows_are_thrown_from_above() {
     }
 }
 
-/// Code 5-1 traces the shadow of sphere 2 along +LightDir, and Code 3-1 does not ask for t > 0: two slips cancel.
+/// Code 5-1 traces the shadow of sphere 2 along +LightDir, and Code 3-1 does not ask for t > 0: two
+/// slips cancel.
 #[test]
 fn the_shadow_of_sphere_2_falls_where_it_should() {
     let sphere2 = ([-0.28125, -0.3125, 0.40625], 0.1875);
@@ -349,7 +353,8 @@ fn only_the_surface_receives_shadows() {
     }
 }
 
-/// Code 5-1 lets mirrored objects overwrite each other: sphere 1, then sphere 2, then the tetrahedron.
+/// Code 5-1 lets mirrored objects overwrite each other: sphere 1, then sphere 2, then the
+/// tetrahedron.
 #[test]
 fn the_last_mirrored_solid_is_shown() {
     let mut overwritten = [0; 3];
@@ -375,8 +380,8 @@ fn the_last_mirrored_solid_is_shown() {
     assert!(overwritten.iter().all(|&n| n > 20), "{overwritten:?}");
 }
 
-/// Code 5-1 shades mirrored points with the eye's direction: a mirrored face shows half of what the face itself shows. An
-/// exponent of 1 makes the highlight wide.
+/// Code 5-1 shades mirrored points with the eye's direction: a mirrored face shows half of what the
+/// face itself shows. An exponent of 1 makes the highlight wide.
 #[test]
 fn a_mirrored_highlight_is_the_eyes() {
     let text = firsthit::scene::BUILTIN_TOML.replace("exponent = 1000 ", "exponent = 1 ");

@@ -1,4 +1,5 @@
-//! A picture that goes through OpenGL without a window comes back bit for bit, whatever library made the context.
+//! A picture that goes through OpenGL without a window comes back bit for bit, whatever library
+//! made the context.
 
 use std::ffi::c_void;
 
@@ -62,7 +63,8 @@ fn every_stage_comes_back_bit_for_bit() {
     }
 }
 
-/// Both zeros, the smallest and largest of every kind of float, and NaNs quiet and signalling, of either sign, with payloads.
+/// Both zeros, the smallest and largest of every kind of float, and NaNs quiet and signalling, of
+/// either sign, with payloads.
 const SPECIAL: [u32; 24] = [
     0x0000_0000,
     0x8000_0000,
@@ -103,7 +105,8 @@ fn every_kind_of_float_comes_back_bit_for_bit() {
     }
 }
 
-/// A picture that is traced over the last one, by one tracer or another, and only its changed rows uploaded.
+/// A picture that is traced over the last one, by one tracer or another, and only its changed rows
+/// uploaded.
 #[test]
 fn the_rows_that_changed_are_all_that_need_be_uploaded() {
     let size = 61;
@@ -238,7 +241,8 @@ fn is_any_current(through: Through) -> bool {
     match through {
         Through::Egl => {
             let device = Device::query_devices().unwrap().next().unwrap();
-            // SAFETY: no native display is passed, and asking for the current context has no conditions.
+            // SAFETY: no native display is passed, and asking for the current context has no
+            // conditions.
             let current = unsafe {
                 let display = Display::with_device(&device, None).unwrap();
                 display.egl().GetCurrentContext()
@@ -246,7 +250,8 @@ fn is_any_current(through: Through) -> bool {
             !current.is_null()
         }
         Through::OsMesa => {
-            // SAFETY: the library is loaded already, and this is the function's type in GL/osmesa.h.
+            // SAFETY: the library is loaded already, and this is the function's type in
+            // GL/osmesa.h.
             let current = unsafe {
                 let library = libloading::Library::new("libOSMesa.so.8").unwrap();
                 let get_current = library
@@ -308,7 +313,8 @@ fn a_size_that_no_picture_has_is_refused() {
     }
 }
 
-/// Both ways into a framebuffer of 8 bits show what [`display_byte`] says, so their times are those of the same work.
+/// Both ways into a framebuffer of 8 bits show what [`display_byte`] says, so their times are those
+/// of the same work.
 #[test]
 fn the_timed_ways_show_the_same_bytes() {
     let mut pictures = vec![image(64, |i| (i as f32 / 12288.0 * 1.5 - 0.2).to_bits())];

@@ -1,5 +1,5 @@
-//! Promise: the same bytes everywhere. A checksum for each kernel and stage, made once, holds on every machine, at every number of
-//! threads, in debug and release, on every architecture.
+//! Promise: the same bytes everywhere. A checksum for each kernel and stage, made once, holds on
+//! every machine, at every number of threads, in debug and release, on every architecture.
 
 use firsthit::camera::{ROUND, frame_angle};
 use firsthit::tracer::{Decision, Simd};
@@ -25,7 +25,8 @@ fn picture(kernel: Kernel, stage: Stage, frame: u64) -> u64 {
     checksum(&trace(kernel, &Scene::builtin(), stage, alpha, SIZE))
 }
 
-/// The stages of the built-in scene as the picture's definition has them, at frame 0; then stage 6 at frames 3, 10 and 17.
+/// The stages of the built-in scene as the picture's definition has them, at frame 0; then stage 6
+/// at frames 3, 10 and 17.
 const TRUE_PICTURES: [(Stage, u64, u64); 10] = [
     (Stage::Image, 0, 0x47ae_6df5_9afb_3219),
     (Stage::Spheres, 0, 0xd1e0_98b3_224c_8fb7),
@@ -98,7 +99,8 @@ fn any_number_of_threads() {
     }
 }
 
-/// The samples and decisions of a frame, at a size at which every border meets pixels of the hard scenes.
+/// The samples and decisions of a frame, at a size at which every border meets pixels of the hard
+/// scenes.
 fn with_simd(
     simd: Simd,
     kernel: Kernel,
@@ -171,7 +173,8 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
         (Kernel::Double, 2),
     ];
     let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
-    // Two pictures of two sizes, which the tracers take turns with; now and then somebody else writes into one.
+    // Two pictures of two sizes, which the tracers take turns with; now and then somebody else
+    // writes into one.
     let mut retained = [61, 96].map(|size| Image::new(size).unwrap());
     let mut whole = retained.clone();
     let mut random = Random::new();

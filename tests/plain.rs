@@ -1,9 +1,11 @@
-//! The picture evaluated plainly in as many bits as asked for, straight from its definition: world space, Equation 3-1 with its
-//! textbook discriminant, planes cut one by one, a mirrored ray that is really mirrored. It shares no formula with the tracer.
+//! The picture evaluated plainly in as many bits as asked for, straight from its definition: world
+//! space, Equation 3-1 with its textbook discriminant, planes cut one by one, a mirrored ray that
+//! is really mirrored. It shares no formula with the tracer.
 //!
-//! Lengths are measured in 1/(3N) and the eye looks along −(10 sin α, 3, 10 cos α), so that at α = 0 everything but square roots
-//! and the final colour is rational, and a touching line is seen to touch. At other angles what is zero for every α is seen
-//! to be small beyond accident (see [`Number`]).
+//! Lengths are measured in 1/(3N) and the eye looks along −(10 sin α, 3, 10 cos α), so that at α =
+//! 0 everything but square roots and the final colour is rational, and a touching line is seen to
+//! touch. At other angles what is zero for every α is seen to be small beyond accident (see
+//! [`Number`]).
 
 mod number;
 
@@ -65,7 +67,8 @@ struct Solid {
     color: Vector,
 }
 
-/// Where a line is in a solid: from `near`, entering `face` with the outward normal there, to `far`.
+/// Where a line is in a solid: from `near`, entering `face` with the outward normal there, to
+/// `far`.
 struct Inside {
     near: Number,
     far: Number,
@@ -97,7 +100,8 @@ impl Solid {
                 })
             }
             Shape::Tetrahedron(faces) => {
-                // t = num/den with den > 0; fractions are compared by multiplying out, which is exact where they are.
+                // t = num/den with den > 0; fractions are compared by multiplying out, which is
+                // exact where they are.
                 let less =
                     |(a, b): &(Number, Number), (c, d): &(Number, Number)| (a * d).less(&(c * b));
                 let mut near: Option<(usize, (Number, Number))> = None;
@@ -160,7 +164,8 @@ struct Sight {
 }
 
 impl<'a> Plain<'a> {
-    /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are apart where something is.
+    /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are
+    /// apart where something is.
     pub(crate) fn new(scene: &'a Scene, alpha: f64, size: u32, bits: usize) -> Plain<'a> {
         let number = |value: f64| Number::exact(value, bits);
         let vector = |v: DVec3| v.to_array().map(number);
@@ -411,7 +416,8 @@ impl<'a> Plain<'a> {
             )
     }
 
-    /// Whether the ray to a light in the square's plane meets the square at some t > 0, from a point in that plane.
+    /// Whether the ray to a light in the square's plane meets the square at some t > 0, from a
+    /// point in that plane.
     fn crosses_square(&self, point: &Vector) -> bool {
         let Some(half_width) = self.half_width() else {
             return false;

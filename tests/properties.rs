@@ -1,5 +1,5 @@
-//! Promise: over random scenes, aimed at what is hard, exact and reference give the same bits, which are those of the plain
-//! evaluation; and pictures that must be related are, bit for bit.
+//! Promise: over random scenes, aimed at what is hard, exact and reference give the same bits,
+//! which are those of the plain evaluation; and pictures that must be related are, bit for bit.
 //!
 //! Every run tries the same scenes.
 
@@ -24,8 +24,9 @@ enum Broken {
     Wrong(String),
 }
 
-/// Asks that `property` holds of `count` random scenes, each with whatever else `draw` chooses; those that are refused are not counted. From
-/// a scene of which it does not hold all is removed that has nothing to do with that, and the rest is shown.
+/// Asks that `property` holds of `count` random scenes, each with whatever else `draw` chooses;
+/// those that are refused are not counted. From a scene of which it does not hold all is removed
+/// that has nothing to do with that, and the rest is shown.
 fn for_all<C: Debug>(
     count: usize,
     draw: impl Fn(&mut Random) -> (Model, C),

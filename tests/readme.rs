@@ -1,4 +1,5 @@
-//! Promise: the README shows what the program does: its pictures are the program's, its keys are the viewer's.
+//! Promise: the README shows what the program does: its pictures are the program's, its keys are
+//! the viewer's.
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -11,7 +12,8 @@ use firsthit::{Kernel, Scene, Stage, Tracer, viewer};
 
 use crate::helpers::{hard_scene, trace};
 
-/// A picture under tests/images: its name, the scene's name in tests/scenes or none for the built-in scene, N, stage, frame and kernel.
+/// A picture under tests/images: its name, the scene's name in tests/scenes or none for the
+/// built-in scene, N, stage, frame and kernel.
 type Picture = (&'static str, Option<&'static str>, u32, Stage, u64, Kernel);
 
 const PICTURES: [Picture; 10] = [

@@ -1,4 +1,5 @@
-//! Promise: `firsthit report` counts what is wrong as it is, says it to people and to programs, draws it, and leaves no half file.
+//! Promise: `firsthit report` counts what is wrong as it is, says it to people and to programs,
+//! draws it, and leaves no half file.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,7 +14,8 @@ use tempfile::TempDir;
 
 use crate::helpers::{self, printed, program, trace_with_decisions};
 
-/// What `firsthit report` with the words of `line` printed; it must have succeeded and said nothing else.
+/// What `firsthit report` with the words of `line` printed; it must have succeeded and said nothing
+/// else.
 fn report(folder: &TempDir, line: &str) -> String {
     printed(folder, &format!("report {line}"))
 }
@@ -108,7 +110,8 @@ fn known_errors_are_counted_as_they_are() {
     let truth = Image::new(2).unwrap();
     let true_decisions = [Decision::Background; 4];
     let mut image = truth.clone();
-    // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel 2: a NaN.
+    // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel
+    // 2: a NaN.
     image.samples_mut()[1] = f32::from_bits(3);
     image.samples_mut()[4] = 0.75;
     image.samples_mut()[8] = f32::NAN;
@@ -143,7 +146,8 @@ fn known_errors_are_counted_as_they_are() {
     );
 }
 
-/// The errors of a kernel over the first two frames of the built-in scene at N = 24, counted without the report.
+/// The errors of a kernel over the first two frames of the built-in scene at N = 24, counted
+/// without the report.
 fn counted(kernel: Kernel) -> (u64, u64) {
     let (mut wrong, mut misrounded) = (0, 0);
     for alpha in [0, 1].map(frame_angle) {
@@ -268,7 +272,8 @@ fn the_table_has_every_row_and_no_line_longer_than_another_of_its_kind() {
                     .take(3)
                     .eq(["builtin", stage, kernel])
             });
-            // Once among the times, once among the errors, and its numbers end where their columns do.
+            // Once among the times, once among the errors, and its numbers end where their columns
+            // do.
             let widths: Vec<usize> = rows.map(|row| row.chars().count()).collect();
             assert_eq!(widths.len(), 2, "{stage} {kernel}\n{table}");
         }
@@ -411,7 +416,8 @@ fn ctrl_c_leaves_no_file() {
     .unwrap();
     std::thread::sleep(std::time::Duration::from_millis(500));
     assert!(child.try_wait().unwrap().is_none(), "it is measuring");
-    // Of a test in the background of a shell SIGINT may be ignored, and so it is of its children: SIGTERM ends them alike.
+    // Of a test in the background of a shell SIGINT may be ignored, and so it is of its children:
+    // SIGTERM ends them alike.
     let kill = format!("kill -INT {0} && kill -TERM {0}", child.id());
     let killed = Command::new("sh").args(["-c", &kill]).status().unwrap();
     assert!(killed.success());

@@ -1,4 +1,5 @@
-//! Promise: a scene file is read exactly, and what is refused is refused with its line and field, in one line.
+//! Promise: a scene file is read exactly, and what is refused is refused with its line and field,
+//! in one line.
 
 use firsthit::Scene;
 use firsthit::scene::BUILTIN_TOML;

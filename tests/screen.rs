@@ -1,4 +1,5 @@
-//! What a screen leaves in the framebuffer of a window: the right pixels, as the right bytes, whatever was drawn there before.
+//! What a screen leaves in the framebuffer of a window: the right pixels, as the right bytes,
+//! whatever was drawn there before.
 
 use std::ffi::{CStr, c_void};
 use std::rc::Rc;
@@ -48,7 +49,8 @@ impl Gl {
         let attributes = ContextAttributesBuilder::new()
             .with_context_api(ContextApi::OpenGl(Some(Version::new(3, 3))))
             .build(None);
-        // SAFETY: no handle of a window, display or other context is passed; the functions are of the context that is current.
+        // SAFETY: no handle of a window, display or other context is passed; the functions are of
+        // the context that is current.
         unsafe {
             let display = Display::with_device(&device, None).unwrap();
             let config = display.find_configs(template).unwrap().next().unwrap();
@@ -64,7 +66,8 @@ impl Gl {
         }
     }
 
-    /// Binds a new framebuffer of this format and size, with depth and stencil as a window may have.
+    /// Binds a new framebuffer of this format and size, with depth and stencil as a window may
+    /// have.
     fn bind_framebuffer(&self, format: u32, surface: UVec2) {
         let gl = &self.gl;
         let [width, height] = surface.as_ivec2().to_array();
@@ -102,7 +105,8 @@ impl Gl {
         let mut bytes = vec![0; surface.element_product() as usize * 4 * bytes_of_kind];
         let [width, height] = surface.as_ivec2().to_array();
         let pixels = glow::PixelPackData::Slice(Some(&mut bytes));
-        // SAFETY: rows of four values of one or four bytes have no gaps, so that the driver fills the bytes and no more.
+        // SAFETY: rows of four values of one or four bytes have no gaps, so that the driver fills
+        // the bytes and no more.
         unsafe {
             self.gl
                 .read_pixels(0, 0, width, height, glow::RGBA, kind, pixels)
@@ -142,7 +146,8 @@ fn coordinates(size: u32) -> Image {
     image
 }
 
-/// Draws [`coordinates`] into `placement` of a float framebuffer and compares every pixel of it with the definition.
+/// Draws [`coordinates`] into `placement` of a float framebuffer and compares every pixel of it
+/// with the definition.
 #[track_caller]
 fn assert_drawn(gl: &Gl, screen: &Screen, size: u32, surface: UVec2, placement: Placement) {
     gl.bind_framebuffer(glow::RGBA32F, surface);
@@ -174,7 +179,8 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
     for size in [1, 2, 7, 10, 64] {
         let mut screen = screen(gl.gl.clone(), size).unwrap();
         screen.upload(&coordinates(size)).unwrap();
-        // Whole multiples with and without a margin, and smaller ones, among them those where every centre lies between two texels.
+        // Whole multiples with and without a margin, and smaller ones, among them those where every
+        // centre lies between two texels.
         for side in 1..=3 * size + 2 {
             for surface in [UVec2::new(side, side), UVec2::new(side + 5, side + 2)] {
                 assert_drawn(&gl, &screen, size, surface, Placement::fit(surface, size));
@@ -247,7 +253,8 @@ fn eight_bits_are_the_nearest_byte_ties_to_even() {
 
 /// Leaves behind in `gl` what another painter may, by its name.
 fn disturb(gl: &glow::Context, what: &str) {
-    // SAFETY: the context is current; the one buffer is bound only for as long as no memory of ours is meant.
+    // SAFETY: the context is current; the one buffer is bound only for as long as no memory of ours
+    // is meant.
     unsafe {
         match what {
             "blending" => {
@@ -344,7 +351,8 @@ fn what_another_painter_leaves_behind_does_no_harm() {
             "an unpack buffer",
         ] {
             gl.bind_framebuffer(format, surface);
-            // A disturbance before the screen is made, between upload and draw, and between two draws.
+            // A disturbance before the screen is made, between upload and draw, and between two
+            // draws.
             disturb(&gl.gl, what);
             let mut screen = screen(gl.gl.clone(), size).unwrap();
             disturb(&gl.gl, what);

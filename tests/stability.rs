@@ -1,8 +1,10 @@
-//! Promise: where others stumble, exact and reference make no wrong decision and round every sample correctly; and how far
-//! off fast and double are there is known to the pixel.
+//! Promise: where others stumble, exact and reference make no wrong decision and round every sample
+//! correctly; and how far off fast and double are there is known to the pixel.
 //!
-//! Every scene in `tests/scenes` is one that provokes something, which its first line names. The truth is the plain evaluation. It is slow, so it is asked about the pixels on either side of every border, and some others; over the
-//! whole frame exact and reference, which go different ways, must agree bit for bit, and the others are measured against them.
+//! Every scene in `tests/scenes` is one that provokes something, which its first line names. The
+//! truth is the plain evaluation. It is slow, so it is asked about the pixels on either side of
+//! every border, and some others; over the whole frame exact and reference, which go different
+//! ways, must agree bit for bit, and the others are measured against them.
 
 mod table;
 
@@ -17,7 +19,8 @@ use crate::helpers::{
 };
 use crate::plain::Plain;
 
-/// N: a power of two, so that samples at α = 0 are short binary fractions, which scenes can meet exactly.
+/// N: a power of two, so that samples at α = 0 are short binary fractions, which scenes can meet
+/// exactly.
 const SIZE: u32 = 128;
 
 /// At most about this many pixels of a frame are evaluated plainly.
@@ -60,7 +63,8 @@ fn errors(got: &Frame, truth: &Frame) -> Errors {
     errors
 }
 
-/// The pixels to evaluate plainly: those next to another decision, thinned out if they are many, and some others.
+/// The pixels to evaluate plainly: those next to another decision, thinned out if they are many,
+/// and some others.
 fn sampled(decisions: &[Decision]) -> BTreeSet<u32> {
     let differs = |a: u32, b: u32| decisions[a as usize] != decisions[b as usize];
     let mut border = BTreeSet::new();

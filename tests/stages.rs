@@ -9,7 +9,8 @@ use crate::plain::Plain;
 /// The kernels that promise to be right, and double, which these scenes are not hard enough for.
 const KERNELS: [Kernel; 3] = [Kernel::Exact, Kernel::Reference, Kernel::Double];
 
-/// Traces a frame of each of some stages with each kernel and compares every pixel's decision and every sample with the plain evaluation.
+/// Traces a frame of each of some stages with each kernel and compares every pixel's decision and
+/// every sample with the plain evaluation.
 fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64, size: u32) {
     let frames = stages.map(|stage| {
         KERNELS.map(|kernel| {
@@ -94,7 +95,8 @@ fn angles_of_any_size_and_sign() {
 
 #[test]
 fn other_scenes() {
-    // Overlapping solids, a light from below the surface, solids below it, a vertex order of the other hand.
+    // Overlapping solids, a light from below the surface, solids below it, a vertex order of the
+    // other hand.
     let scene = Scene::from_toml(
         r#"
         background = [0.1, 0.2, 0.3]
@@ -131,7 +133,8 @@ fn quadrants_pixel_by_pixel() {
         let image = trace(Kernel::Exact, &Scene::builtin(), Stage::Image, 0.0, size);
         for row in 0..size {
             for column in 0..size {
-                // Left and lower quadrants own the line through the middle, which only an even size has.
+                // Left and lower quadrants own the line through the middle, which only an even size
+                // has.
                 let (left, low) = (2 * column <= size, 2 * row <= size);
                 let expected = match (left, low) {
                     (true, true) => [0.3f32, 0.3, 0.0],

@@ -1,7 +1,8 @@
 //! What needs neither a window nor a process to itself, in one program: a module for each promise.
 //!
-//! What traces whole pictures or saves them as EXR is tested here and not beside the code: the library's own test program would have to
-//! contain every kernel for all vector instructions, and every compression, once more, which takes as long to compile as the rest of it.
+//! What traces whole pictures or saves them as EXR is tested here and not beside the code: the
+//! library's own test program would have to contain every kernel for all vector instructions, and
+//! every compression, once more, which takes as long to compile as the rest of it.
 
 #![allow(
     clippy::unwrap_used,

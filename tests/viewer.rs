@@ -1,5 +1,5 @@
-//! The viewer, for real: the built program in a window under Xvfb, keys through XTEST, and the pixels of the window compared byte for
-//! byte with the traced picture.
+//! The viewer, for real: the built program in a window under Xvfb, keys through XTEST, and the
+//! pixels of the window compared byte for byte with the traced picture.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,5 +1,6 @@
-//! The viewer on Wayland, for real: the built program under sway without a screen, keys typed by wtype, the display's pixels taken by
-//! grim and compared byte for byte with the traced picture. `.ci/wayland` brings these tools and runs this.
+//! The viewer on Wayland, for real: the built program under sway without a screen, keys typed by
+//! wtype, the display's pixels taken by grim and compared byte for byte with the traced picture.
+//! `.ci/wayland` brings these tools and runs this.
 
 #![allow(
     clippy::unwrap_used,

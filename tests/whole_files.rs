@@ -94,7 +94,8 @@ fn start(folder: &TempDir, line: &str, fault: &str) -> Option<Child> {
     Some(command.spawn().unwrap())
 }
 
-/// Kills the program `times` times while it writes each kind of output. `fault` is one of the system, if any.
+/// Kills the program `times` times while it writes each kind of output. `fault` is one of the
+/// system, if any.
 fn kill(times: u32, signals: &[Signal], fault: &str) {
     let mut random = Random::new();
     for (line, names) in OUTPUTS {
@@ -147,7 +148,8 @@ fn has_nameless_files() -> bool {
     options.open(folder.path()).is_ok()
 }
 
-/// The signals that end the program as long as nobody wants them to be ignored: in the background of a shell that is so of the first.
+/// The signals that end the program as long as nobody wants them to be ignored: in the background
+/// of a shell that is so of the first.
 fn caught() -> Vec<Signal> {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

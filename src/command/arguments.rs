@@ -58,7 +58,8 @@ pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     }
 }
 
-/// More than any scene of 4096 solids takes; without a limit, a device or a video given by mistake would be read until memory is full.
+/// More than any scene of 4096 solids takes; without a limit, a device or a video given by mistake
+/// would be read until memory is full.
 const MAX_SCENE_BYTES: u64 = 1 << 26;
 
 fn read(path: &Path) -> io::Result<String> {

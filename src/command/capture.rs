@@ -29,11 +29,13 @@ pub(crate) struct Arguments {
     frames: Option<RangeInclusive<u64>>,
     #[command(flatten)]
     picture: PictureArguments,
-    /// What the pixels pass through before they are written; egl if not given, else osmesa, else none, whichever works first
+    /// What the pixels pass through before they are written; egl if not given, else osmesa, else
+    /// none, whichever works first
     #[arg(long, value_name = "WAY", value_enum)]
     through: Option<Way>,
-    /// The file to write: .png (8 bits, as displayed), .exr (every float bit for bit), .apng (an animation of --frames); with --frames, {} in the name of
-    /// a .png or .exr becomes the frame's number
+    /// The file to write: .png (8 bits, as displayed), .exr (every float bit for bit), .apng (an
+    /// animation of --frames); with --frames, {} in the name of a .png or .exr becomes the
+    /// frame's number
     #[arg(short, long, value_name = "PATH")]
     output: PathBuf,
 }

@@ -72,8 +72,8 @@ impl Passage {
         reasons.push_str(&format!("; not through {name}: {error}"));
     }
 
-    /// Sends a picture through. At the other end it is the same, bit for bit, or there is an error; where the way was not asked for, the
-    /// next one is taken then.
+    /// Sends a picture through. At the other end it is the same, bit for bit, or there is an error;
+    /// where the way was not asked for, the next one is taken then.
     pub(crate) fn pass(&mut self, image: &Image) -> Result<(), ScreenError> {
         while let Some((through, screen)) = &mut self.screen {
             let waiting = Waiting::for_driver(self.size);

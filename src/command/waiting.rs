@@ -1,4 +1,5 @@
-//! What is waited for that is not ours: it is named when it takes long, and a driver is not waited for without end.
+//! What is waited for that is not ours: it is named when it takes long, and a driver is not waited
+//! for without end.
 
 use std::fs;
 use std::path::Path;
@@ -17,8 +18,8 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
-    /// For what `path` is to hold, if it is a pipe or a device: it is waited for until it comes, or the program is interrupted. A file is
-    /// not waited for.
+    /// For what `path` is to hold, if it is a pipe or a device: it is waited for until it comes, or
+    /// the program is interrupted. A file is not waited for.
     pub(crate) fn for_input(path: &Path) -> Option<Waiting> {
         let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
         let what = || format!("for {} to be written", path.display());

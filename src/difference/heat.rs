@@ -23,8 +23,9 @@ const CHARACTER: u32 = 8;
 
 const PAPER: [u8; 3] = [255, 255, 255];
 
-/// A picture that shows how far `image` is from `truth`, each pixel coloured by [`error_color`] of its worst sample, above a scale with
-/// numbers; as a PNG, whatever the extension of `path`. Pictures of less than 257 pixels along a side are magnified by whole numbers. The file
+/// A picture that shows how far `image` is from `truth`, each pixel coloured by [`error_color`] of
+/// its worst sample, above a scale with numbers; as a PNG, whatever the extension of `path`.
+/// Pictures of less than 257 pixels along a side are magnified by whole numbers. The file
 /// appears whole or not at all.
 ///
 /// # Errors

@@ -1,10 +1,11 @@
 //! The colours of errors.
 
-/// Errors from this many octaves of f32 steps on have the last colour: such samples have not even their first digit in common.
+/// Errors from this many octaves of f32 steps on have the last colour: such samples have not even
+/// their first digit in common.
 pub(super) const OCTAVES: u32 = 24;
 
-/// From 1 step to 2^24 in equal ratios: the map inferno of matplotlib without its black. It grows lighter all the way, so it reads in grey
-/// and for the colour-blind.
+/// From 1 step to 2^24 in equal ratios: the map inferno of matplotlib without its black. It grows
+/// lighter all the way, so it reads in grey and for the colour-blind.
 const RAMP: [[u8; 3]; 5] = [
     [0x42, 0x0a, 0x68],
     [0x93, 0x26, 0x67],
@@ -19,8 +20,9 @@ const NONE: [u8; 3] = [0, 0, 0];
 /// A NaN in the place of a number.
 const NAN: [u8; 3] = [0x56, 0xb4, 0xe9];
 
-/// The colour, red, green and blue of a display, for an error as [`steps`](super::steps) counts it: black for 0, light blue for `None`, and
-/// from dark purple at 1 over red and orange to pale yellow at 2²⁴ and more.
+/// The colour, red, green and blue of a display, for an error as [`steps`](super::steps) counts it:
+/// black for 0, light blue for `None`, and from dark purple at 1 over red and orange to pale yellow
+/// at 2²⁴ and more.
 ///
 /// ```
 /// use firsthit::difference::error_color;

@@ -7,11 +7,13 @@ use firsthit::memory::is_dispensable;
 
 use super::{at_once, only_once};
 
-/// The system's allocator, except that the program ends where memory is refused that it cannot do without. Otherwise whoever asked would
-/// abort or panic, each in its own words, and some only after asking for more.
+/// The system's allocator, except that the program ends where memory is refused that it cannot do
+/// without. Otherwise whoever asked would abort or panic, each in its own words, and some only
+/// after asking for more.
 pub(crate) struct Memory;
 
-// SAFETY: every call is handed on to the system's allocator with what it came with, and what that returns is returned, or nothing is.
+// SAFETY: every call is handed on to the system's allocator with what it came with, and what that
+// returns is returned, or nothing is.
 unsafe impl GlobalAlloc for Memory {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller has promised.

@@ -12,12 +12,15 @@ use signal_hook::low_level::emulate_default_handler;
 
 /// Sees to signals from now on.
 pub(super) fn watch() {
-    // A file that grows beyond what is allowed is an error of the write then, which is told as any other.
+    // A file that grows beyond what is allowed is an error of the write then, which is told as any
+    // other.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
-    // C's library aborts, after a line, where it is refused memory that it has no error for: the status is then that of every failure.
+    // C's library aborts, after a line, where it is refused memory that it has no error for: the
+    // status is then that of every failure.
     let always = Arc::new(AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, always);
-    // It registers itself what it waits for: where there is no thread for it, signals end the program as they do any.
+    // It registers itself what it waits for: where there is no thread for it, signals end the
+    // program as they do any.
     let _ = thread::Builder::new()
         .name("signals".to_owned())
         .stack_size(1 << 16)
@@ -38,7 +41,8 @@ fn wait() {
     }
 }
 
-/// The signals that whoever started the program wants to be ignored, as nohup does: a bit for each, the lowest for the first.
+/// The signals that whoever started the program wants to be ignored, as nohup does: a bit for each,
+/// the lowest for the first.
 fn ignored() -> u64 {
     // Where the system does not tell, none is.
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -13,7 +13,8 @@ use crate::memory;
 /// A frame stays for 1/5 s.
 const DELAY: (u16, u16) = (1, 5);
 
-/// An `.apng` file in the making: frames are given one by one, and the file appears, whole, with [`Animation::finish`]; dropped before that, nothing of it is left.
+/// An `.apng` file in the making: frames are given one by one, and the file appears, whole, with
+/// [`Animation::finish`]; dropped before that, nothing of it is left.
 pub struct Animation {
     writer: Writer<Output>,
     file: WholeFile,
@@ -24,10 +25,12 @@ impl Animation {
     /// The most frames that the format can number.
     pub const MAX_FRAMES: u64 = MAX_FRAMES;
 
-    /// Starts an animation of `frames` frames, `size` × `size` pixels each, to be named `path`, whatever its extension.
+    /// Starts an animation of `frames` frames, `size` × `size` pixels each, to be named `path`,
+    /// whatever its extension.
     ///
     /// # Errors
-    /// [`SaveError`] unless there are 1 to [`Animation::MAX_FRAMES`] frames, and where the file cannot be written.
+    /// [`SaveError`] unless there are 1 to [`Animation::MAX_FRAMES`] frames, and where the file
+    /// cannot be written.
     pub fn create(path: impl AsRef<Path>, size: u32, frames: u64) -> Result<Animation, SaveError> {
         let path = path.as_ref();
         let count = match u32::try_from(frames) {
@@ -58,7 +61,8 @@ impl Animation {
     /// Adds the next frame, as [`display_byte`] shows it.
     ///
     /// # Errors
-    /// [`SaveError`] where the file cannot be written, `image` is of another size, or all frames are there already.
+    /// [`SaveError`] where the file cannot be written, `image` is of another size, or all frames
+    /// are there already.
     pub fn push(&mut self, image: &Image) -> Result<(), SaveError> {
         self.write(image).map_err(|error| self.file.error(error))
     }

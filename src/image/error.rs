@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The most frames of an animation: the format numbers them, and each takes up to two of its 2³¹ sequence numbers.
+/// The most frames of an animation: the format numbers them, and each takes up to two of its 2³¹
+/// sequence numbers.
 pub(super) const MAX_FRAMES: u64 = 1 << 30;
 
 /// A file that cannot be written. Nothing is left of it: what was there before is there still.

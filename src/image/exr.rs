@@ -10,7 +10,8 @@ use ::exr::math::Vec2;
 use super::Image;
 use super::whole_file::Output;
 
-/// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib, rows in order.
+/// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib,
+/// rows in order.
 pub(super) fn write(image: &Image, output: &mut Output) -> io::Result<()> {
     let size = image.size() as usize;
     let samples = image.samples();

@@ -1,4 +1,5 @@
-//! A picture out of a file: an EXR as it is, a PNG as the fractions that its whole numbers stand for.
+//! A picture out of a file: an EXR as it is, a PNG as the fractions that its whole numbers stand
+//! for.
 
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -41,7 +42,8 @@ pub enum LoadError {
         /// What is wrong with it.
         reason: String,
     },
-    /// It is an EXR whose compression is not read here: of a damaged file, its decoder could overflow or take all memory.
+    /// It is an EXR whose compression is not read here: of a damaged file, its decoder could
+    /// overflow or take all memory.
     #[error("{}: {compression} is not read: convert it to zip compression", path.display())]
     Compression {
         /// The file.
@@ -73,12 +75,13 @@ pub enum LoadError {
 }
 
 impl Image {
-    /// Reads `path`: the channels R, G and B of an `.exr`, every 32-bit float bit for bit; or a `.png`, where a sample is the byte / 255
-    /// (of a PNG of 16 bits: the number / 65535), rounded to f32.
+    /// Reads `path`: the channels R, G and B of an `.exr`, every 32-bit float bit for bit; or a
+    /// `.png`, where a sample is the byte / 255 (of a PNG of 16 bits: the number / 65535),
+    /// rounded to f32.
     ///
     /// # Errors
-    /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture that is as wide as high and opaque, or it is an
-    /// EXR compressed by B44 or DWA.
+    /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture
+    /// that is as wide as high and opaque, or it is an EXR compressed by B44 or DWA.
     pub fn load(path: impl AsRef<Path>) -> Result<Image, LoadError> {
         let path = path.as_ref();
         let format = Format::of(path).map_err(|_| LoadError::Extension(path.to_owned()))?;
@@ -163,17 +166,19 @@ fn square(width: usize, height: usize) -> Result<Image, Problem> {
     Image::new(side(width, height)?).map_err(Problem::Image)
 }
 
-/// Whether the decoder refuses whatever is wrong with a file. That of B44 computes with numbers of a file unchecked, that of DWA allocates as
-/// much as a file says.
+/// Whether the decoder refuses whatever is wrong with a file. That of B44 computes with numbers of
+/// a file unchecked, that of DWA allocates as much as a file says.
 fn is_safe(compression: Compression) -> bool {
     use Compression::*;
     matches!(compression, Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24)
 }
 
-/// The bytes of the largest picture and its opacity. The decoder allocates a whole block before it reads any of it.
+/// The bytes of the largest picture and its opacity. The decoder allocates a whole block before it
+/// reads any of it.
 const MAX_BLOCK: u64 = 16 * (MAX_SIZE as u64).pow(2);
 
-/// Refuses the part of a file that would be read, where the decoder could not refuse it by itself or only after it has decoded all of it.
+/// Refuses the part of a file that would be read, where the decoder could not refuse it by itself
+/// or only after it has decoded all of it.
 fn check_part(part: &Header) -> Result<(), Problem> {
     side(part.layer_size.width(), part.layer_size.height())?;
     if !is_safe(part.compression) {

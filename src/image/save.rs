@@ -6,10 +6,11 @@ use super::whole_file::WholeFile;
 use super::{Format, Image, SaveError, exr, png};
 
 impl Image {
-    /// Writes the picture to `path`: `.png` as [`display_byte`](super::display_byte) shows it, `.exr` bit for bit. The bytes of the file depend on nothing but the picture.
+    /// Writes the picture to `path`: `.png` as [`display_byte`](super::display_byte) shows it,
+    /// `.exr` bit for bit. The bytes of the file depend on nothing but the picture.
     ///
-    /// The file appears whole or not at all, under a temporary name in the same folder until then. A file that is already there is replaced; a symbolic
-    /// link is followed.
+    /// The file appears whole or not at all, under a temporary name in the same folder until then.
+    /// A file that is already there is replaced; a symbolic link is followed.
     ///
     /// # Errors
     /// [`SaveError`] where the extension is neither of the two, or the file cannot be written.

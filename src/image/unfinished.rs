@@ -1,7 +1,8 @@
 //! A file that nobody finds before it is whole.
 //!
-//! On Linux it has no name at all until then, where the file system can do that: it vanishes with the process, however that ends. Elsewhere
-//! it has one that begins with `.firsthit-`, in the same folder, and is removed when it is given up, and by [`abandon_unfinished`].
+//! On Linux it has no name at all until then, where the file system can do that: it vanishes with
+//! the process, however that ends. Elsewhere it has one that begins with `.firsthit-`, in the same
+//! folder, and is removed when it is given up, and by [`abandon_unfinished`].
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -21,7 +22,8 @@ pub(super) enum Unfinished {
 }
 
 impl Unfinished {
-    /// Starts a file that can be given any name in `folder`, with the permissions that any new file gets.
+    /// Starts a file that can be given any name in `folder`, with the permissions that any new file
+    /// gets.
     pub(super) fn create(folder: &Path) -> io::Result<(Unfinished, File)> {
         #[cfg(target_os = "linux")]
         if let Some(file) = nameless::create(folder) {
@@ -30,7 +32,8 @@ impl Unfinished {
         Named::create(folder).map(|(named, file)| (Unfinished::Named(named), file))
     }
 
-    /// Gives `file`, which was created with this, its name in the same `folder`. What has that name already is replaced.
+    /// Gives `file`, which was created with this, its name in the same `folder`. What has that name
+    /// already is replaced.
     pub(super) fn persist(self, file: File, folder: &Path, target: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
@@ -56,7 +59,8 @@ mod nameless {
 
     use super::Named;
 
-    /// A file without a name; `None` where this file system has none, or where it could not be given one.
+    /// A file without a name; `None` where this file system has none, or where it could not be
+    /// given one.
     pub(super) fn create(folder: &Path) -> Option<File> {
         let file = OpenOptions::new()
             .write(true)
@@ -74,7 +78,8 @@ mod nameless {
 
     pub(super) fn persist(file: &File, folder: &Path, target: &Path) -> io::Result<()> {
         match link(file, target) {
-            // A file without a name can only get a new one: for an instant it has another, to be renamed from.
+            // A file without a name can only get a new one: for an instant it has another, to be
+            // renamed from.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 let (named, ()) = Named::with(folder, |name| link(file, name))?;
                 named.persist(target)
@@ -111,7 +116,8 @@ impl Named {
         })
     }
 
-    /// A new name, and what `make` makes of it: a file, or an error of the kind `AlreadyExists` where another name is to be tried.
+    /// A new name, and what `make` makes of it: a file, or an error of the kind `AlreadyExists`
+    /// where another name is to be tried.
     fn with<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<(Named, T)> {
         let mut names = names();
         let (made, path) = Builder::new()
@@ -145,10 +151,12 @@ impl Drop for Named {
 /// How many milliseconds another thread may take to give a name or to take one away.
 const PATIENCE: u32 = 1000;
 
-/// Removes every file that this process has begun to save and not finished, and lets it begin and finish no other: for a program that is
-/// about to end without coming back to who saves, as on a signal. Who saves from now on waits for ever.
+/// Removes every file that this process has begun to save and not finished, and lets it begin and
+/// finish no other: for a program that is about to end without coming back to who saves, as on a
+/// signal. Who saves from now on waits for ever.
 ///
-/// On Linux there is mostly nothing to remove: unfinished files have no name there, where the file system can do that.
+/// On Linux there is mostly nothing to remove: unfinished files have no name there, where the file
+/// system can do that.
 pub fn abandon_unfinished() {
     let names = (0..PATIENCE).find_map(|_| match NAMES.try_lock() {
         Ok(names) => Some(names),

@@ -1,7 +1,7 @@
 //! A file that appears whole or not at all.
 //!
-//! The bytes go to an [`Unfinished`] file in the same folder, which gets its name at the end, when the disk has it: whoever looks at the name
-//! finds the old file or the new one, never a part.
+//! The bytes go to an [`Unfinished`] file in the same folder, which gets its name at the end, when
+//! the disk has it: whoever looks at the name finds the old file or the new one, never a part.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -27,17 +27,20 @@ pub(crate) struct Output {
     failure: Failure,
 }
 
-/// The first write that failed. An encoder may drop such an error, or wrap it until its kind is lost; a file is only whole if there was none.
+/// The first write that failed. An encoder may drop such an error, or wrap it until its kind is
+/// lost; a file is only whole if there was none.
 type Failure = Arc<OnceLock<io::Error>>;
 
 impl WholeFile {
     /// Starts the file that is to be named `path`, with the permissions that any new file gets.
     ///
-    /// A symbolic link is followed, and what it points to is replaced; one that points to nothing is replaced itself.
+    /// A symbolic link is followed, and what it points to is replaced; one that points to nothing
+    /// is replaced itself.
     pub(crate) fn create(path: &Path) -> Result<(WholeFile, Output), SaveError> {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if let Ok(metadata) = fs::metadata(&target) {
-            // Renaming would put a file in the place of a device, and would not ask whether the old file may be written.
+            // Renaming would put a file in the place of a device, and would not ask whether the old
+            // file may be written.
             if !metadata.is_file() {
                 return Err(SaveError::NotAFile(path.to_owned()));
             }

@@ -1,11 +1,13 @@
-//! Every bound holds: random expressions in each number against the same expression in arbitrary precision.
+//! Every bound holds: random expressions in each number against the same expression in arbitrary
+//! precision.
 
 use std::cmp::Ordering;
 
 use super::{Bounded, DoubleDouble, Doubt, Expression, Real};
 use crate::random::Random;
 
-/// A number as a scene has them: short, long, tiny, large, of either sign, or one that nearly cancels another.
+/// A number as a scene has them: short, long, tiny, large, of either sign, or one that nearly
+/// cancels another.
 fn number(random: &mut Random) -> f64 {
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
     let long = 1.0 + random.fraction();
@@ -136,7 +138,8 @@ fn what_is_not_in_doubt_is_right() {
 fn exact_cancellation_is_seen_by_double_doubles() {
     let x = DoubleDouble::exact(0.1);
     let y = DoubleDouble::exact(0.3);
-    // (x + y)(x + y) needs more than 106 bits; x·x is exact, and so is the difference of equal things.
+    // (x + y)(x + y) needs more than 106 bits; x·x is exact, and so is the difference of equal
+    // things.
     assert_eq!((x * x - x * x).sign(), Ok(Ordering::Equal));
     assert_eq!((x - x).sign(), Ok(Ordering::Equal));
     assert_eq!((x * y - y * x).sign(), Ok(Ordering::Equal));
@@ -163,7 +166,8 @@ fn an_expression_knows_what_no_number_of_digits_shows() {
                 .to_sample(),
             Ok(1.053_671_2e-8)
         );
-        // 1 + 2⁻²⁴ is halfway between two floats, and the tie goes to the even one; a hair above it does not.
+        // 1 + 2⁻²⁴ is halfway between two floats, and the tie goes to the even one; a hair above it
+        // does not.
         let half = Expression::exact(1.0 + f64::from(f32::EPSILON) / 2.0);
         assert_eq!((one * half).to_sample(), Ok(1.0));
         let hair = Expression::exact(1e-300);

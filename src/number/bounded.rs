@@ -2,21 +2,26 @@
 //!
 //! # Why the bounds hold
 //!
-//! Every operation of IEEE 754 returns fl(a ∘ b) = (a ∘ b)(1 + δ), |δ| ≤ u = 2⁻⁵³, where nothing underflows; sums are exact
-//! where they would underflow. With a = A + α, |α| ≤ E_a for the true A, and the same for b, the error of a result v is at most
+//! Every operation of IEEE 754 returns fl(a ∘ b) = (a ∘ b)(1 + δ), |δ| ≤ u = 2⁻⁵³, where nothing
+//! underflows; sums are exact where they would underflow. With a = A + α, |α| ≤ E_a for the true A,
+//! and the same for b, the error of a result v is at most
 //!
 //! - sum: E_a + E_b + |a + b − v|, where a + b − v is an f64 that TwoSum gives exactly (Knuth),
-//! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β); without u|v| where a and b have at most 53 bits together,
-//! - quotient: (E_a + |a/b|E_b)/|B| + u|v|, from A/B − a/b = ((A − a)b − a(B − b))/(Bb), with |B| ≥ |b| − E_b,
+//! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β); without u|v| where a and
+//!   b have at most 53 bits together,
+//! - quotient: (E_a + |a/b|E_b)/|B| + u|v|, from A/B − a/b = ((A − a)b − a(B − b))/(Bb), with |B| ≥
+//!   |b| − E_b,
 //! - root: E_a/√a + u v, from |√A − √a| = |A − a|/(√A + √a), √A ≥ 0.
 //!
-//! These expressions are themselves computed in f64. Each is made of at most 12 operations on terms that are not negative,
-//! so that what is computed is at least (1 − u)¹² of the expression, and [`ROUND_UP`] more than makes up for that, for
-//! u|v| in place of u|a ∘ b|, and for |v| in place of |a/b|. What underflow can take away is less than [`UNDERFLOW`]: a scene's
-//! numbers have magnitudes from 1e-30 to 1e6, no formula has a term of more than eight factors of them, and a number as
-//! small as 1e-290 is in doubt.
+//! These expressions are themselves computed in f64. Each is made of at most 12 operations on terms
+//! that are not negative, so that what is computed is at least (1 − u)¹² of the expression, and
+//! [`ROUND_UP`] more than makes up for that, for u|v| in place of u|a ∘ b|, and for |v| in place of
+//! |a/b|. What underflow can take away is less than [`UNDERFLOW`]: a scene's numbers have
+//! magnitudes from 1e-30 to 1e6, no formula has a term of more than eight factors of them, and a
+//! number as small as 1e-290 is in doubt.
 //!
-//! So whatever f64 computes exactly is known exactly: at α = 0, in a scene of short binary fractions, a tie is seen to be one.
+//! So whatever f64 computes exactly is known exactly: at α = 0, in a scene of short binary
+//! fractions, a tie is seen to be one.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -26,7 +31,8 @@ use super::error_free::two_sum;
 use super::rounding::{ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
 use super::{Doubt, Real, round_enclosure, sin_cos};
 
-/// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity or NaN says nothing.
+/// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity
+/// or NaN says nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounded {
     pub(super) value: f64,
@@ -37,7 +43,8 @@ impl Bounded {
     /// A number that the truth is not below.
     #[inline]
     pub(crate) fn at_least(self) -> f64 {
-        // A little more than the error takes care of the rounding here; NaN and infinities say nothing.
+        // A little more than the error takes care of the rounding here; NaN and infinities say
+        // nothing.
         let low = self.value - (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
         if low.is_nan() { f64::NEG_INFINITY } else { low }
     }
@@ -67,7 +74,8 @@ impl Bounded {
     }
 }
 
-/// Whether a · b is an f64: their significant bits together are no more than an f64 has, and nothing underflows.
+/// Whether a · b is an f64: their significant bits together are no more than an f64 has, and
+/// nothing underflows.
 #[inline]
 fn is_exact_product(a: f64, b: f64) -> bool {
     let zeros = |x: f64| (x.to_bits() | 1 << (f64::MANTISSA_DIGITS - 1)).trailing_zeros();

@@ -2,16 +2,19 @@
 //!
 //! # Why the bounds hold
 //!
-//! With u = 2⁻⁵³ and no underflow, Joldes, Muller and Popescu ("Tight and rigorous error bounds for basic building blocks of
-//! double-word arithmetic", ACM TOMS 44, 2017) prove for normalised operands a relative error of at most 3u² + 13u³ for
-//! the accurate sum (their algorithm 6) and, without a fused multiply-add, of at most 7u² for the product (algorithm 10 with
-//! Dekker's product). [`SUM`] and [`PRODUCT`] are above that. Where both low parts are 0, the error-free transformations give
-//! the sum and the product exactly, which is how a sign of exactly 0 can be told.
+//! With u = 2⁻⁵³ and no underflow, Joldes, Muller and Popescu ("Tight and rigorous error bounds for
+//! basic building blocks of double-word arithmetic", ACM TOMS 44, 2017) prove for normalised
+//! operands a relative error of at most 3u² + 13u³ for the accurate sum (their algorithm 6) and,
+//! without a fused multiply-add, of at most 7u² for the product (algorithm 10 with
+//! Dekker's product). [`SUM`] and [`PRODUCT`] are above that. Where both low parts are 0, the
+//! error-free transformations give the sum and the product exactly, which is how a sign of exactly
+//! 0 can be told.
 //!
-//! Quotient and root are checked instead of analysed: with r = a − q b computed with its own bound, |a/b − q| ≤ |r|/|b|, and
-//! with r = a − q², |√a − q| ≤ |r|/q.
+//! Quotient and root are checked instead of analysed: with r = a − q b computed with its own bound,
+//! |a/b − q| ≤ |r|/|b|, and with r = a − q², |√a − q| ≤ |r|/q.
 //!
-//! How errors of operands carry over, and why the bounds may themselves be computed in f64: as in `bounded.rs`.
+//! How errors of operands carry over, and why the bounds may themselves be computed in f64: as in
+//! `bounded.rs`.
 
 mod real;
 
@@ -65,7 +68,8 @@ impl DoubleDouble {
         DoubleDouble { error: 0.0, ..self }
     }
 
-    /// A number from `high` + `low`, or less by an ulp of `low`, to `high` + `up_to`, or more by one.
+    /// A number from `high` + `low`, or less by an ulp of `low`, to `high` + `up_to`, or more by
+    /// one.
     pub(super) fn around(high: f64, low: f64, up_to: f64) -> DoubleDouble {
         let ulps = 4.0 * UNIT_ROUNDOFF * (low.abs() + up_to.abs());
         DoubleDouble {

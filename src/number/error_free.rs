@@ -16,7 +16,8 @@ pub(super) fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, b - (sum - a))
 }
 
-/// A number's upper 26 bits and the rest (Veltkamp). No operand comes near the 2⁹⁹⁶ where this would overflow.
+/// A number's upper 26 bits and the rest (Veltkamp). No operand comes near the 2⁹⁹⁶ where this
+/// would overflow.
 #[inline]
 fn split(a: f64) -> (f64, f64) {
     let scaled = a * 134_217_729.0;
@@ -24,8 +25,8 @@ fn split(a: f64) -> (f64, f64) {
     (upper, a - upper)
 }
 
-/// a · b as a rounded product and its error, exactly where nothing underflows (Dekker). A fused multiply-add would do it in one
-/// step, and would be a slow call on every machine that has none.
+/// a · b as a rounded product and its error, exactly where nothing underflows (Dekker). A fused
+/// multiply-add would do it in one step, and would be a slow call on every machine that has none.
 #[inline]
 pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;

@@ -1,8 +1,10 @@
-//! Numbers that are never in doubt: an expression, evaluated to as many digits as its sign or its rounding needs.
+//! Numbers that are never in doubt: an expression, evaluated to as many digits as its sign or its
+//! rounding needs.
 //!
-//! A number is a place in a thread's list of operations. Nothing is computed until a sign or a sample is asked for; then the
-//! operations below it are evaluated in intervals whose ends are rounded outward, with ever more bits. With the last of [`BITS`]
-//! the convention of the picture ends it: a sign still open counts as 0, and a sample whose enclosure still holds a midpoint
+//! A number is a place in a thread's list of operations. Nothing is computed until a sign or a
+//! sample is asked for; then the operations below it are evaluated in intervals whose ends are
+//! rounded outward, with ever more bits. With the last of [`BITS`] the convention of the picture
+//! ends it: a sign still open counts as 0, and a sample whose enclosure still holds a midpoint
 //! between two f32s counts as that midpoint.
 
 use std::cell::RefCell;
@@ -19,15 +21,16 @@ use dashu_float::round::mode::{Down, HalfEven, Up};
 
 use super::{DoubleDouble, Doubt, Real, round_sum};
 
-/// The bits that an evaluation is tried with, one after the other. The first are more than a double-double has, which has been tried
-/// before; with the last it ends.
+/// The bits that an evaluation is tried with, one after the other. The first are more than a
+/// double-double has, which has been tried before; with the last it ends.
 const BITS: [usize; 7] = [192, 384, 768, 1536, 3072, 6144, 8192];
 
 /// A number on this thread's list, valid until its session ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expression {
     place: usize,
-    /// The same number, which answers where it is in no doubt: mostly it is not a whole formula that is doubtful, but one of its parts.
+    /// The same number, which answers where it is in no doubt: mostly it is not a whole formula
+    /// that is doubtful, but one of its parts.
     near: DoubleDouble,
 }
 
@@ -60,7 +63,8 @@ pub(crate) struct Session {
     operations: Vec<Operation>,
     /// What each was evaluated to with each of [`BITS`], if it was.
     evaluated: Vec<[Option<Enclosure>; BITS.len()]>,
-    /// Sines and cosines by the bits of their angle and the number among [`BITS`]. They outlive the operations: they are dear.
+    /// Sines and cosines by the bits of their angle and the number among [`BITS`]. They outlive
+    /// the operations: they are dear.
     turns: HashMap<(u64, usize), [Enclosure; 2]>,
 }
 
@@ -151,15 +155,16 @@ impl Expression {
 }
 
 impl Session {
-    /// A session of its own, and what `compute` returns: its expressions are valid in [`Session::go_on`] only, on any thread.
+    /// A session of its own, and what `compute` returns: its expressions are valid in
+    /// [`Session::go_on`] only, on any thread.
     pub(crate) fn begin<T>(compute: impl FnOnce() -> T) -> (Session, T) {
         let mut session = Session::default();
         let result = session.hold(compute);
         (session, result)
     }
 
-    /// Runs `compute`, whose own expressions must not leave it, and forgets them. What was found out about those that there were before
-    /// is remembered.
+    /// Runs `compute`, whose own expressions must not leave it, and forgets them. What was found
+    /// out about those that there were before is remembered.
     pub(crate) fn go_on<T>(&mut self, compute: impl FnOnce() -> T) -> T {
         let kept = self.operations.len();
         let result = self.hold(compute);
@@ -396,8 +401,8 @@ fn down_as_up(x: &FBig<Down>) -> FBig<Up> {
 
 /// The nearest f32, ties to even.
 fn round(x: FBig<HalfEven>) -> f32 {
-    // Not by FBig::to_f32, which does not round to the nearest among subnormal f32s. The f64s here are normal, or too small to
-    // count.
+    // Not by FBig::to_f32, which does not round to the nearest among subnormal f32s. The f64s here
+    // are normal, or too small to count.
     let high = x.to_f64().value();
     let rest = FBig::try_from(high).map_or(Ordering::Equal, |high| x.cmp(&high));
     round_sum(high, f64::from(rest as i8))

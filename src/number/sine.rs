@@ -1,7 +1,7 @@
 //! Sine and cosine of an f64 taken exactly, the same on every platform.
 //!
-//! A frame asks for them once, so they must not cost more than a few rows of pixels: a series in double-doubles, with a bound on
-//! its error, and arbitrary precision for the rest.
+//! A frame asks for them once, so they must not cost more than a few rows of pixels: a series in
+//! double-doubles, with a bound on its error, and arbitrary precision for the rest.
 
 use std::sync::LazyLock;
 
@@ -12,15 +12,17 @@ use super::Real;
 use super::double_double::DoubleDouble;
 use super::error_free::two_sum;
 
-/// The sine and the cosine of the f64 `alpha` taken exactly, each rounded to nearest: the same bits on every platform,
-/// which the system's library does not promise. An angle that is not finite has neither: both are NaN.
+/// The sine and the cosine of the f64 `alpha` taken exactly, each rounded to nearest: the same bits
+/// on every platform, which the system's library does not promise. An angle that is not finite has
+/// neither: both are NaN.
 ///
 /// ```
 /// assert_eq!(firsthit::camera::sin_cos(1e22).0, -0.8522008497671888);
 /// ```
 pub fn sin_cos(alpha: f64) -> (f64, f64) {
-    // α − α³/6 < sin α < α and 1 − α²/2 < cos α < 1: below 2^-27 both lie within a quarter of an ulp of α and of 1, also
-    // where α is subnormal and a result of 53 bits would have to be rounded a second time.
+    // α − α³/6 < sin α < α and 1 − α²/2 < cos α < 1: below 2^-27 both lie within a quarter of an
+    // ulp of α and of 1, also where α is subnormal and a result of 53 bits would have to be
+    // rounded a second time.
     if !alpha.is_finite() {
         return (f64::NAN, f64::NAN);
     }
@@ -31,12 +33,14 @@ pub fn sin_cos(alpha: f64) -> (f64, f64) {
     if let Some([Some(sin), Some(cos)]) = rounded {
         return (sin, cos);
     }
-    // No sine or cosine of a larger f64 is smaller than 2^-62: none is subnormal, and 53 bits are an f64.
+    // No sine or cosine of a larger f64 is smaller than 2^-62: none is subnormal, and 53 bits are
+    // an f64.
     let [sin, cos] = sin_cos_with(alpha, f64::MANTISSA_DIGITS as usize);
     (sin.to_f64().value(), cos.to_f64().value())
 }
 
-/// The sine and the cosine of the f64 `alpha` in double-doubles; of 0 for an angle that is not finite.
+/// The sine and the cosine of the f64 `alpha` in double-doubles; of 0 for an angle that is not
+/// finite.
 pub(super) fn in_two(alpha: f64) -> [DoubleDouble; 2] {
     if alpha == 0.0 || !alpha.is_finite() {
         return [0.0, 1.0].map(DoubleDouble::exact);
@@ -57,8 +61,8 @@ pub(super) fn in_two(alpha: f64) -> [DoubleDouble; 2] {
     })
 }
 
-/// π/2 as a sum, the first two parts of 40 bits each, so that products with a whole number below 2^13 are exact. The whole is off by
-/// less than 2^-188.
+/// π/2 as a sum, the first two parts of 40 bits each, so that products with a whole number below
+/// 2^13 are exact. The whole is off by less than 2^-188.
 const HALF_PI: [f64; 4] = [
     f64::from_bits(0x3ff9_21fb_5444_2000),
     f64::from_bits(0x3d6a_308d_3131_8000),
@@ -78,14 +82,16 @@ static RECIPROCALS: LazyLock<[DoubleDouble; LAST + 1]> = LazyLock::new(|| {
     all
 });
 
-/// Sine and cosine of an angle of moderate size: reduced by multiples of π/2 to |r| < 0.79, and Taylor's series in r.
+/// Sine and cosine of an angle of moderate size: reduced by multiples of π/2 to |r| < 0.79, and
+/// Taylor's series in r.
 fn by_series(alpha: f64) -> Option<[DoubleDouble; 2]> {
     // Below, numbers would underflow; above, the quadrant's number would have too many bits.
     if !(1e-8..4096.0).contains(&alpha.abs()) {
         return None;
     }
     let quadrant = (alpha / HALF_PI[0]).round();
-    // The first difference is exact: both numbers are within a factor 2 of each other (Sterbenz), or the second is 0.
+    // The first difference is exact: both numbers are within a factor 2 of each other (Sterbenz),
+    // or the second is 0.
     let (high, low) = two_sum(alpha - quadrant * HALF_PI[0], -(quadrant * HALF_PI[1]));
     let rest = DoubleDouble {
         high: HALF_PI[2],
@@ -99,8 +105,8 @@ fn by_series(alpha: f64) -> Option<[DoubleDouble; 2]> {
     };
     let r = near - DoubleDouble::exact(quadrant) * rest;
     let minus_square = -(r * r);
-    // Every second term from the n-th on, divided by rⁿ. The sum begins with what is left out: it alternates and falls, and so is less
-    // than 1/(last + 2)!.
+    // Every second term from the n-th on, divided by rⁿ. The sum begins with what is left out: it
+    // alternates and falls, and so is less than 1/(last + 2)!.
     let series = |n: usize, last: usize| {
         let mut sum = DoubleDouble {
             error: RECIPROCALS[LAST].high / 15.0,
@@ -191,7 +197,8 @@ mod tests {
                     let [high, low] = [known.high, known.low].map(|x| FBig::try_from(x).unwrap());
                     let off = (truth - high - low).to_f64().value().abs();
                     assert!(off <= known.error, "{alpha:e}: {off:e} {:e}", known.error);
-                    // And it is known well: to 95 bits, or where α is near a multiple of π/2, to 2^-120.
+                    // And it is known well: to 95 bits, or where α is near a multiple of π/2, to
+                    // 2^-120.
                     let few = known.high.abs() * 2f64.powi(-95) + 2f64.powi(-120);
                     assert!(known.error < few, "{alpha:e}: {:e}", known.error);
                 }

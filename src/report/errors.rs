@@ -49,14 +49,16 @@ pub struct Errors {
     pub wrong_pixels: WrongPixels,
     /// The difference of all samples.
     pub all: Difference,
-    /// The difference of the samples of those pixels that are decided rightly: errors of arithmetic, not of decisions.
+    /// The difference of the samples of those pixels that are decided rightly: errors of
+    /// arithmetic, not of decisions.
     pub decided_rightly: Difference,
     /// Pixels that cheaper arithmetic left in doubt.
     pub in_doubt: InDoubt,
 }
 
 impl Errors {
-    /// Adds a frame: what a kernel made of it, and what it truly is. Pixels that one of the four lacks are left out.
+    /// Adds a frame: what a kernel made of it, and what it truly is. Pixels that one of the four
+    /// lacks are left out.
     pub fn add(
         &mut self,
         (image, decisions): (&Image, &[Decision]),

@@ -1,4 +1,5 @@
-//! The fastest way to give every pixel one colour: what no kernel that writes the whole picture can beat.
+//! The fastest way to give every pixel one colour: what no kernel that writes the whole picture can
+//! beat.
 
 use std::fmt;
 
@@ -32,7 +33,8 @@ impl fmt::Display for Stores {
     }
 }
 
-/// Gives every pixel of `samples`, three floats each, the same colour; in as many threads as `pool` has, in this one without.
+/// Gives every pixel of `samples`, three floats each, the same colour; in as many threads as `pool`
+/// has, in this one without.
 pub(super) fn fill(samples: &mut [f32], color: [f32; 3], stores: Stores, pool: Option<&mut Pool>) {
     match pool {
         None => fill_part(samples, color, stores),
@@ -99,7 +101,8 @@ mod x86 {
     /// A function that writes `pattern` over every block by aligned stores of one width.
     ///
     /// # Safety
-    /// The blocks begin at a multiple of 64 bytes; since a block has 192 bytes, then all do. The processor has the feature.
+    /// The blocks begin at a multiple of 64 bytes; since a block has 192 bytes, then all do. The
+    /// processor has the feature.
     macro_rules! stores {
         ($name:ident, $feature:literal, $lanes:literal, $zero:ident, $load:ident, $store:ident) => {
             #[target_feature(enable = $feature)]
@@ -111,7 +114,8 @@ mod x86 {
                 }
                 for block in blocks {
                     for (part, &vector) in block.chunks_exact_mut($lanes).zip(&vectors) {
-                        // SAFETY: the part has as many floats as are stored, and begins at a multiple of their bytes.
+                        // SAFETY: the part has as many floats as are stored, and begins at a
+                        // multiple of their bytes.
                         unsafe { $store(part.as_mut_ptr(), vector) };
                     }
                 }

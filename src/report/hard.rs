@@ -1,4 +1,5 @@
-//! The scenes of the stability suite: each provokes something that others have stumbled over, which its first line names.
+//! The scenes of the stability suite: each provokes something that others have stumbled over, which
+//! its first line names.
 
 macro_rules! scenes {
     ($($name:literal)*) => {

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::{Machine, Measured, Pipeline, Report, Row, Spread, Timing};
 
-/// The whole of it. What cannot be said as a number, an infinite error or what was not measured, is `null`.
+/// The whole of it. What cannot be said as a number, an infinite error or what was not measured, is
+/// `null`.
 #[derive(Serialize)]
 struct Json<'a> {
     version: u32,

@@ -19,8 +19,9 @@ pub struct Machine {
     pub cores: usize,
     /// The version of the program.
     pub version: &'static str,
-    /// The commit that it was built from: the environment variable `FIRSTHIT_COMMIT` of the build, else the one that the sources of the
-    /// build were at; `None` where neither was known, and in a debug build. Changes to the sources that were not committed are not seen.
+    /// The commit that it was built from: the environment variable `FIRSTHIT_COMMIT` of the build,
+    /// else the one that the sources of the build were at; `None` where neither was known, and
+    /// in a debug build. Changes to the sources that were not committed are not seen.
     pub commit: Option<String>,
     /// Whether it was built without optimisation: then its times mean little.
     pub debug_build: bool,

@@ -9,7 +9,8 @@ use crate::tracer::TraceError;
 use crate::tracer::pool::Pool;
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
-/// Few samples of a slow kernel, many of a fast one: about this long for each row and number of threads.
+/// Few samples of a slow kernel, many of a fast one: about this long for each row and number of
+/// threads.
 const TIME: Duration = Duration::from_millis(1500);
 
 /// A median of fewer would be one of them.
@@ -48,7 +49,8 @@ impl Spread {
 pub struct Timing {
     /// Threads that traced, and filled.
     pub threads: usize,
-    /// The vector instructions that the kernel used, as [`Simd`](crate::tracer::Simd) names them; "none" if none.
+    /// The vector instructions that the kernel used, as [`Simd`](crate::tracer::Simd) names them;
+    /// "none" if none.
     pub simd: &'static str,
     /// Rounds measured.
     pub samples: usize,
@@ -124,8 +126,8 @@ impl Filler {
 
 /// Times `tracer` on the frames at `angles`, in turn with `filler`.
 ///
-/// A sample is a whole round: all frames in order, on one tracer, into one picture, everything that a frame needs inside; and then
-/// filling the picture as often.
+/// A sample is a whole round: all frames in order, on one tracer, into one picture, everything that
+/// a frame needs inside; and then filling the picture as often.
 pub(super) fn time(
     tracer: &mut Tracer,
     threads: usize,
@@ -185,8 +187,9 @@ pub(super) fn time(
     }))
 }
 
-/// Seconds for all frames at `angles`. The last of them comes before the first too, and does not count then: what is made at first use is
-/// made, threads are awake, and caches hold what a frame finds in them when others of its kind came before.
+/// Seconds for all frames at `angles`. The last of them comes before the first too, and does not
+/// count then: what is made at first use is made, threads are awake, and caches hold what a frame
+/// finds in them when others of its kind came before.
 fn time_round(
     angles: &[f64],
     mut frame: impl FnMut(f64) -> Result<(), TraceError>,

@@ -36,7 +36,8 @@ pub struct Pipeline {
 pub struct Costs {
     /// To trace it over the frame before, on all threads.
     pub trace_ms: Spread,
-    /// To hand the rows that changed to OpenGL as a texture; 0 for `glDrawPixels`, which does that while it draws, at every redraw anew.
+    /// To hand the rows that changed to OpenGL as a texture; 0 for `glDrawPixels`, which does that
+    /// while it draws, at every redraw anew.
     pub upload_ms: Spread,
     /// To draw it.
     pub draw_ms: Spread,
@@ -44,7 +45,8 @@ pub struct Costs {
     pub read_back_ms: Spread,
 }
 
-/// Shows rounds of frames by every way in turn, traced by the first kernel on the first scene in the first stage.
+/// Shows rounds of frames by every way in turn, traced by the first kernel on the first scene in
+/// the first stage.
 pub(super) fn measure(
     request: &Request,
     threads: usize,
@@ -135,8 +137,8 @@ impl Way {
             return Ok(());
         };
         let begin = Instant::now();
-        // The first finds the picture of another way on the screen, and what is made at first use not made: it is uploaded whole, and does
-        // not count.
+        // The first finds the picture of another way on the screen, and what is made at first use
+        // not made: it is uploaded whole, and does not count.
         for frame in 0..=ROUND {
             let (time, changed) = frames.trace(frame_angle(frame))?;
             let image = &*frames.image;

@@ -1,9 +1,11 @@
 //! Error against time, as an SVG.
 //!
-//! A panel for each group of scenes, a mark for each kernel: on the way across, its time on one thread; on the way up, the mean error
-//! of its samples in f32 steps, wrong pixels included, with a line from there to the largest: the scenes differ in brightness by many orders of
-//! magnitude, and steps do not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels differ
-//! in shape, so that the plot reads in grey, and in colours that the colour-blind can tell apart (Okabe and Ito).
+//! A panel for each group of scenes, a mark for each kernel: on the way across, its time on one
+//! thread; on the way up, the mean error of its samples in f32 steps, wrong pixels included, with a
+//! line from there to the largest: the scenes differ in brightness by many orders of magnitude, and
+//! steps do not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels
+//! differ in shape, so that the plot reads in grey, and in colours that the colour-blind can tell
+//! apart (Okabe and Ito).
 
 mod axis;
 
@@ -126,7 +128,8 @@ impl Report {
     }
 }
 
-/// One kernel on all scenes of a group: the median time and how far it spreads, the mean of the mean errors, the largest of the largest.
+/// One kernel on all scenes of a group: the median time and how far it spreads, the mean of the
+/// mean errors, the largest of the largest.
 fn mark<'a>(kernel: Kernel, measured: impl Iterator<Item = &'a Measured>) -> Option<Mark> {
     let (mut each, mut largest, mut spread) = (Vec::new(), 0.0_f64, None);
     for Measured { timings, errors } in measured {
@@ -258,7 +261,8 @@ fn color(kernel: Kernel) -> RGBColor {
     }
 }
 
-/// The outline of a kernel's shape around (`x`, `y`), `parts` halves of its size. Of different sizes, they can be told apart where they coincide.
+/// The outline of a kernel's shape around (`x`, `y`), `parts` halves of its size. Of different
+/// sizes, they can be told apart where they coincide.
 fn shape(
     area: &Area<'_>,
     kernel: Kernel,

@@ -238,7 +238,8 @@ impl Columns {
     }
 }
 
-/// Rows of cells under titled columns. The first group holds names, which begin where their column does; numbers end where theirs does.
+/// Rows of cells under titled columns. The first group holds names, which begin where their column
+/// does; numbers end where theirs does.
 struct Table {
     groups: Vec<Columns>,
     rows: Vec<Vec<String>>,

@@ -10,14 +10,15 @@ struct Hull {
     radius: f64,
 }
 
-/// For each solid, spheres first, the other solids that may stand between a point of it and the light; all others certainly do not.
+/// For each solid, spheres first, the other solids that may stand between a point of it and the
+/// light; all others certainly do not.
 pub(super) fn casters(
     spheres: &[Sphere],
     tetrahedra: &[Tetrahedron],
     to_light: DVec3,
 ) -> Vec<Vec<u16>> {
-    // Everything below is computed in f64 in fewer than 32 roundings, each off by at most 2⁻⁵³ of the numbers that go in: a
-    // millionth of a millionth more is far more than they add up to.
+    // Everything below is computed in f64 in fewer than 32 roundings, each off by at most 2⁻⁵³ of
+    // the numbers that go in: a millionth of a millionth more is far more than they add up to.
     const MORE: f64 = 1.0 + 1e-12;
     let hulls = spheres.iter().map(|sphere| Hull {
         center: sphere.center,

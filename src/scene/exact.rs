@@ -42,16 +42,18 @@ fn sign(x: &Relaxed) -> Ordering {
     }
 }
 
-/// The sign of six times the signed volume, (b − a) · ((c − a) × (d − a)): equal where the four points lie in one plane.
+/// The sign of six times the signed volume, (b − a) · ((c − a) × (d − a)): equal where the four
+/// points lie in one plane.
 pub(super) fn orientation(vertices: [DVec3; 4]) -> Ordering {
     let [a, b, c, d] = vertices.map(exact);
     sign(&dot(&minus(&b, &a), &cross(&minus(&c, &a), &minus(&d, &a))))
 }
 
-/// A sphere or a plane that points of solids or of the surface lie on: the same number where it is the same.
+/// A sphere or a plane that points of solids or of the surface lie on: the same number where it is
+/// the same.
 ///
-/// Two faces in one plane, a solid listed twice, a base that lies in the surface: such a tie covers an area of the picture,
-/// and at most angles no number of digits would ever show that it is one.
+/// Two faces in one plane, a solid listed twice, a base that lies in the surface: such a tie covers
+/// an area of the picture, and at most angles no number of digits would ever show that it is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Support(u32);
 
@@ -68,7 +70,8 @@ pub(crate) struct Facts {
     pub(crate) facing_light: Vec<[Ordering; 4]>,
     /// Where each solid is, spheres first, seen from the surface; `Above` where there is none.
     pub(crate) sides: Vec<Side>,
-    /// For each solid, spheres first, the others that may stand between a point of it and the light.
+    /// For each solid, spheres first, the others that may stand between a point of it and the
+    /// light.
     pub(crate) casters: Vec<Vec<u16>>,
 }
 
@@ -203,7 +206,8 @@ impl Plane {
         }
     }
 
-    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the same plane.
+    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the
+    /// same plane.
     fn coefficients(self) -> [RBig; 4] {
         let [x, y, z] = self.normal.map(Relaxed::canonicalize);
         let all = [x, y, z, self.offset.canonicalize()];
@@ -250,7 +254,8 @@ mod tests {
             DVec3::Z * 1e-30,
         ];
         assert_eq!(orientation(tiny), Ordering::Greater);
-        // In f64, 1e6 + 1e-30 is 1e6; the tetrahedron is given by what its numbers are, which is flat.
+        // In f64, 1e6 + 1e-30 is 1e6; the tetrahedron is given by what its numbers are, which is
+        // flat.
         let far = tiny.map(|p| p + 1e6);
         assert_eq!(orientation(far), Ordering::Equal);
         // Coordinates of both magnitudes: a volume of 1e-30 · 1e6 · 1e6.
@@ -298,7 +303,8 @@ mod tests {
         assert_eq!(Some(facts.faces[0][3]), facts.surface);
         assert_eq!(Some(facts.faces[1][0]), facts.surface);
         assert_ne!(facts.faces[0][0], facts.faces[0][1]);
-        // The light comes straight from above: the bases are turned away from it, whatever their winding.
+        // The light comes straight from above: the bases are turned away from it, whatever their
+        // winding.
         assert_eq!(
             (facts.facing_light[0][3], facts.facing_light[1][0]),
             (Ordering::Less, Ordering::Less)

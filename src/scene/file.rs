@@ -183,7 +183,8 @@ fn scene(file: File, standard: Option<&Scene>) -> Result<Scene, Refusal> {
     })
 }
 
-/// What is read where a field is given, else the standard; the built-in scene itself has none and gives every field.
+/// What is read where a field is given, else the standard; the built-in scene itself has none and
+/// gives every field.
 fn or_standard<G, T>(
     given: Option<G>,
     read: fn(G) -> Result<T, Refusal>,

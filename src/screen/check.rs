@@ -7,7 +7,8 @@ use super::{Placement, Screen};
 use crate::image::{Image, display_byte};
 use crate::memory;
 
-/// As many pixels of a framebuffer are looked at; a whole one of four times the size would be noticed when a window is resized.
+/// As many pixels of a framebuffer are looked at; a whole one of four times the size would be
+/// noticed when a window is resized.
 const MOST: u32 = 1 << 20;
 
 /// A pixel of a framebuffer that is not what the picture says.
@@ -22,8 +23,8 @@ pub struct Differs {
 }
 
 impl Screen {
-    /// The first pixel, of up to a million from the bottom of a framebuffer with 8 bits a colour, that is not what [`Screen::draw`] of
-    /// `image` should have left there.
+    /// The first pixel, of up to a million from the bottom of a framebuffer with 8 bits a colour,
+    /// that is not what [`Screen::draw`] of `image` should have left there.
     pub(crate) fn first_difference(
         &self,
         surface: UVec2,
@@ -36,8 +37,8 @@ impl Screen {
         // Without memory nothing is looked at.
         memory::reserve(&mut bytes, length).ok()?;
         bytes.resize(length, 0);
-        // SAFETY: the context is current. No buffer is bound, and rows of four bytes a pixel have no gaps at any alignment, so that the
-        // driver writes as many bytes as are there.
+        // SAFETY: the context is current. No buffer is bound, and rows of four bytes a pixel have
+        // no gaps at any alignment, so that the driver writes as many bytes as are there.
         unsafe {
             self.gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             self.gl.read_pixels(

@@ -24,7 +24,8 @@ pub(super) struct Egl {
 }
 
 impl Egl {
-    /// An OpenGL context on the first device that gives one, software before hardware: the same pictures on every machine.
+    /// An OpenGL context on the first device that gives one, software before hardware: the same
+    /// pictures on every machine.
     pub(super) fn open(profile: Profile) -> Result<Egl, ScreenError> {
         let missing = |reason: String| ScreenError::Missing {
             library: LIBRARY,

@@ -47,7 +47,8 @@ pub enum ScreenError {
         /// The driver's `GL_MAX_TEXTURE_SIZE`.
         max: u32,
     },
-    /// The driver says that it is out of memory; Mesa's software renderer also says so of a texture beyond a fixed number of bytes.
+    /// The driver says that it is out of memory; Mesa's software renderer also says so of a texture
+    /// beyond a fixed number of bytes.
     #[error(
         "this OpenGL driver has no room for a picture of {size} × {size} pixels: choose a smaller size, or capture with `--through none`"
     )]
@@ -75,7 +76,8 @@ pub enum ScreenError {
         /// MiB that may be needed.
         needed: u64,
     },
-    /// Threads are limited (`ulimit -u`), and a driver would wait for ever for those that it cannot have.
+    /// Threads are limited (`ulimit -u`), and a driver would wait for ever for those that it cannot
+    /// have.
     #[error(
         "the system refuses the threads that an OpenGL driver needs ({0}): raise the limit (`ulimit -u`), or capture with `--through none`, which needs no OpenGL"
     )]

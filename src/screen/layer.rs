@@ -47,8 +47,8 @@ impl Layer {
         })
     }
 
-    /// Replaces all texels: `rgba` holds `size.x` × `size.y` pixels, rows from the top, red, green and
-    /// blue multiplied by alpha. Whatever is missing or left over makes the layer empty.
+    /// Replaces all texels: `rgba` holds `size.x` × `size.y` pixels, rows from the top, red, green
+    /// and blue multiplied by alpha. Whatever is missing or left over makes the layer empty.
     ///
     /// # Errors
     /// [`ScreenError::Memory`] and [`ScreenError::Refused`] where the driver cannot take it.
@@ -60,8 +60,8 @@ impl Layer {
         }
         let gl = &self.gl;
         set_unpacking(gl);
-        // SAFETY: the context is current. With these pixel-store parameters and no buffer bound, the
-        // driver reads size.x × size.y × 4 bytes, and so many are there.
+        // SAFETY: the context is current. With these pixel-store parameters and no buffer bound,
+        // the driver reads size.x × size.y × 4 bytes, and so many are there.
         unsafe {
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.tex_image_2d(
@@ -89,7 +89,8 @@ impl Layer {
             return;
         }
         let gl = &self.gl;
-        // SAFETY: the context is current and all names are of it; the vertex shader reads no buffer.
+        // SAFETY: the context is current and all names are of it; the vertex shader reads no
+        // buffer.
         unsafe {
             gl.viewport(corner.x, corner.y, self.size.x as i32, self.size.y as i32);
             gl.enable(glow::BLEND);
@@ -108,7 +109,8 @@ impl Layer {
 
 impl Drop for Layer {
     fn drop(&mut self) {
-        // SAFETY: both names were made here and nothing else deletes them; the program frees itself.
+        // SAFETY: both names were made here and nothing else deletes them; the program frees
+        // itself.
         unsafe {
             self.gl.delete_texture(self.texture);
             self.gl.delete_vertex_array(self.vertex_array);

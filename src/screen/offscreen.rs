@@ -47,9 +47,10 @@ impl Through {
 
 /// A [`Screen`] in a context and a float framebuffer of its own.
 ///
-/// Several may live in one thread. Making, using and dropping one leaves **no** context current: EGL and OSMesa may share one place for
-/// "the current context" without telling each other, so nothing is left there to be mistaken. For the same reason, who has made another
-/// context current on this thread should release it first.
+/// Several may live in one thread. Making, using and dropping one leaves **no** context current:
+/// EGL and OSMesa may share one place for "the current context" without telling each other, so
+/// nothing is left there to be mistaken. For the same reason, who has made another context current
+/// on this thread should release it first.
 pub struct Offscreen {
     // Dropped in this order: what belongs to the context before the context.
     framebuffer: Framebuffer,
@@ -61,7 +62,8 @@ impl Offscreen {
     /// A context through `through`, with all that pictures of `size` × `size` pixels need.
     ///
     /// # Errors
-    /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else those of [`Screen::new`].
+    /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else
+    /// those of [`Screen::new`].
     pub fn open(through: Through, size: u32) -> Result<Offscreen, ScreenError> {
         let context = through.open(Profile::Core, size)?;
         context.make_current()?;
@@ -77,23 +79,26 @@ impl Offscreen {
 
     fn make(context: &dyn Context, size: u32) -> Result<(Screen, Framebuffer), ScreenError> {
         let gl = Rc::new(context.functions()?);
-        // SAFETY: the context is current, and made current again before the screen is used or dropped.
+        // SAFETY: the context is current, and made current again before the screen is used or
+        // dropped.
         let screen = unsafe { Screen::new(gl.clone(), size) }?;
         let rows = size.min(MAX_PIXELS / size);
         let framebuffer = Framebuffer::new(gl, UVec2::new(size, rows), glow::RGBA32F)?;
         Ok((screen, framebuffer))
     }
 
-    /// Uploads `image`, draws it pixel for pixel, and reads back what was drawn: the same samples, bit for bit, from a driver that does
-    /// what OpenGL asks of it.
+    /// Uploads `image`, draws it pixel for pixel, and reads back what was drawn: the same samples,
+    /// bit for bit, from a driver that does what OpenGL asks of it.
     ///
     /// # Errors
-    /// Those of [`Screen::upload`]; [`ScreenError::Image`] where there is no memory for the picture that is read back.
+    /// Those of [`Screen::upload`]; [`ScreenError::Image`] where there is no memory for the picture
+    /// that is read back.
     pub fn show(&mut self, image: &Image) -> Result<Image, ScreenError> {
         self.show_rows(image, 0..image.size())
     }
 
-    /// The same with only some rows uploaded, as by [`Screen::upload_rows`]: the others come back as they were uploaded before.
+    /// The same with only some rows uploaded, as by [`Screen::upload_rows`]: the others come back
+    /// as they were uploaded before.
     ///
     /// # Errors
     /// As [`Offscreen::show`].
@@ -110,14 +115,16 @@ impl Offscreen {
 
 impl Drop for Offscreen {
     fn drop(&mut self) {
-        // For the fields that are dropped next. Where it fails, they had better find no context than another one.
+        // For the fields that are dropped next. Where it fails, they had better find no context
+        // than another one.
         if self.context.make_current().is_err() {
             self.context.release();
         }
     }
 }
 
-/// The most pixels of a float [`Framebuffer`]: 64 MiB of floats, where a whole picture of the largest size would take 4 GiB.
+/// The most pixels of a float [`Framebuffer`]: 64 MiB of floats, where a whole picture of the
+/// largest size would take 4 GiB.
 const MAX_PIXELS: u32 = 1 << 22;
 
 /// Rows as wide as the picture, as many as are drawn and read back at a time.
@@ -204,8 +211,9 @@ impl Framebuffer {
             let rows = samples.len() / (size as usize * 3);
             self.bind();
             screen.draw(self.size, placement);
-            // SAFETY: the context is current. Its pixel-store parameters are as they were made, so that the driver writes
-            // size × rows × 3 floats without a gap, and so many are there.
+            // SAFETY: the context is current. Its pixel-store parameters are as they were made, so
+            // that the driver writes size × rows × 3 floats without a gap, and so many
+            // are there.
             unsafe {
                 gl.read_pixels(
                     0,

@@ -1,4 +1,5 @@
-//! An OpenGL context without window or device, from Mesa's off-screen library, where a system still has it.
+//! An OpenGL context without window or device, from Mesa's off-screen library, where a system still
+//! has it.
 
 use std::cell::UnsafeCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
@@ -13,8 +14,9 @@ const LIBRARY: &str = "libOSMesa.so.8";
 const OTHER_NAMES: [&str; 2] = ["libOSMesa.so.6", "libOSMesa.so"];
 const PACKAGES: &str = "libosmesa6";
 
-/// `OSMESA_FORMAT`, `OSMESA_PROFILE`, `OSMESA_CONTEXT_MAJOR_VERSION` and `OSMESA_CONTEXT_MINOR_VERSION` with their values, as
-/// GL/osmesa.h has them, and the 0 that ends the list.
+/// `OSMESA_FORMAT`, `OSMESA_PROFILE`, `OSMESA_CONTEXT_MAJOR_VERSION` and
+/// `OSMESA_CONTEXT_MINOR_VERSION` with their values, as GL/osmesa.h has them, and the 0 that ends
+/// the list.
 fn attributes(profile: Profile) -> [c_int; 9] {
     let (profile, major, minor) = match profile {
         Profile::Core => (0x34, 3, 3),
@@ -31,7 +33,8 @@ type MakeCurrent = unsafe extern "C" fn(Handle, *mut c_void, u32, c_int, c_int) 
 type Destroy = unsafe extern "C" fn(Handle);
 type ProcAddress = unsafe extern "C" fn(*const c_char) -> *const c_void;
 
-/// The library's functions. It is never unloaded: drivers leave threads and exit handlers behind that must not lose their code.
+/// The library's functions. It is never unloaded: drivers leave threads and exit handlers behind
+/// that must not lose their code.
 struct Functions {
     create: Create,
     make_current: MakeCurrent,
@@ -45,13 +48,15 @@ static FUNCTIONS: LazyLock<Result<Functions, String>> =
 
 impl Functions {
     fn load() -> Result<Functions, libloading::Error> {
-        // SAFETY: Mesa's library may be loaded anywhere and at any time: its initialisers only fill tables of its own.
+        // SAFETY: Mesa's library may be loaded anywhere and at any time: its initialisers only fill
+        // tables of its own.
         let open = |name: &str| unsafe { Library::new(name) };
         let library = open(LIBRARY).or_else(|first| {
             let mut others = OTHER_NAMES.iter().filter_map(|name| open(name).ok());
             others.next().ok_or(first)
         })?;
-        // SAFETY: the types are those that GL/osmesa.h declares for these names, and the library outlives the pointers beside it.
+        // SAFETY: the types are those that GL/osmesa.h declares for these names, and the library
+        // outlives the pointers beside it.
         unsafe {
             Ok(Functions {
                 create: *library.get(b"OSMesaCreateContextAttribs\0")?,
@@ -103,7 +108,8 @@ fn refusal(reason: &str) -> ScreenError {
 
 impl Context for OsMesa {
     fn make_current(&self) -> Result<(), ScreenError> {
-        // SAFETY: the handle lives until the drop, and the pixel, one of four bytes as the format says, as long.
+        // SAFETY: the handle lives until the drop, and the pixel, one of four bytes as the format
+        // says, as long.
         let made = unsafe {
             (self.functions.make_current)(
                 self.handle,
@@ -135,7 +141,8 @@ impl Context for OsMesa {
 impl Drop for OsMesa {
     fn drop(&mut self) {
         self.release();
-        // SAFETY: the handle came from OSMesaCreateContextAttribs, is not current, and is destroyed once.
+        // SAFETY: the handle came from OSMesaCreateContextAttribs, is not current, and is destroyed
+        // once.
         unsafe { (self.functions.destroy)(self.handle) };
     }
 }

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, I64Vec2, IVec2, UVec2};
 
-/// The square of a framebuffer that the picture fills, in pixels from the framebuffer's bottom left corner.
+/// The square of a framebuffer that the picture fills, in pixels from the framebuffer's bottom left
+/// corner.
 ///
 /// It may reach beyond the framebuffer on any side; what lies outside is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +21,13 @@ impl Placement {
         extent: 0,
     };
 
-    /// The largest square for a picture of `size` × `size` pixels in the middle of `surface`, width and height in pixels.
+    /// The largest square for a picture of `size` × `size` pixels in the middle of `surface`, width
+    /// and height in pixels.
     ///
-    /// The side is the largest whole multiple of `size` that fits, so that every pixel of the picture becomes a square of the same
-    /// size; where not even one fits, it is the shorter side of `surface`. Where the margins cannot be equal, the left and the
-    /// bottom one are a pixel narrower.
+    /// The side is the largest whole multiple of `size` that fits, so that every pixel of the
+    /// picture becomes a square of the same size; where not even one fits, it is the shorter
+    /// side of `surface`. Where the margins cannot be equal, the left and the bottom one are a
+    /// pixel narrower.
     pub fn fit(surface: UVec2, size: u32) -> Placement {
         let side = surface.min_element();
         let extent = match side.checked_div(size) {
@@ -37,13 +40,15 @@ impl Placement {
         }
     }
 
-    /// The largest side for which a picture of `size` × `size` pixels is drawn exactly: N E must stay below 2³¹.
+    /// The largest side for which a picture of `size` × `size` pixels is drawn exactly: N E must
+    /// stay below 2³¹.
     pub fn max_extent(size: u32) -> u32 {
         (u32::MAX / 2) / size.max(1)
     }
 
-    /// The pixel, column and row, of a picture of `size` × `size` pixels that the pixel `window` of the framebuffer shows; both count
-    /// from the bottom left corner. `None` beside the picture.
+    /// The pixel, column and row, of a picture of `size` × `size` pixels that the pixel `window` of
+    /// the framebuffer shows; both count from the bottom left corner. `None` beside the
+    /// picture.
     pub fn pixel_at(&self, window: IVec2, size: u32) -> Option<UVec2> {
         let place = window.as_i64vec2() - self.origin.as_i64vec2();
         let extent = i64::from(self.extent);
@@ -53,8 +58,9 @@ impl Placement {
         Some(((2 * place + 1) * i64::from(size) / (2 * extent)).as_uvec2())
     }
 
-    /// The pixels of the framebuffer that show the picture's pixel at column and row `pixel`: the bottom left one, and the one past the
-    /// top right one. Both are the same where the picture is drawn too small for this pixel to be seen.
+    /// The pixels of the framebuffer that show the picture's pixel at column and row `pixel`: the
+    /// bottom left one, and the one past the top right one. Both are the same where the picture
+    /// is drawn too small for this pixel to be seen.
     pub fn square_of(&self, pixel: UVec2, size: u32) -> [IVec2; 2] {
         let (extent, size) = (i64::from(self.extent), i64::from(size.max(1)));
         let first = |pixel: I64Vec2| {
@@ -67,13 +73,15 @@ impl Placement {
         [first(pixel), first(pixel + 1)]
     }
 
-    /// The picture of `size` × `size` pixels with sides of `extent`, so that what the pixel `window` of the framebuffer shows stays
-    /// there; the pixel of the picture exactly, where it is drawn larger than one of the framebuffer before and after.
+    /// The picture of `size` × `size` pixels with sides of `extent`, so that what the pixel
+    /// `window` of the framebuffer shows stays there; the pixel of the picture exactly, where
+    /// it is drawn larger than one of the framebuffer before and after.
     pub fn zoomed(&self, window: IVec2, extent: u32, size: u32) -> Placement {
         let scale = |extent: u32| f64::from(extent) / f64::from(size);
         // In pixels of the picture, from its corner.
         let place = ((window - self.origin).as_dvec2() + 0.5) / scale(self.extent);
-        // Whole pixels of the picture apart from the rest, so that no rounding leads from one into the next.
+        // Whole pixels of the picture apart from the rest, so that no rounding leads from one into
+        // the next.
         let whole = place.floor();
         let within: DVec2 = (place - whole) * scale(extent);
         let shift = (whole * scale(extent)).floor() + within.floor();
@@ -144,7 +152,8 @@ mod tests {
         );
     }
 
-    /// Placements of all kinds: smaller than the picture, as large, whole multiples, and others; inside the window and reaching out.
+    /// Placements of all kinds: smaller than the picture, as large, whole multiples, and others;
+    /// inside the window and reaching out.
     fn placements(size: u32) -> impl Iterator<Item = Placement> {
         let extents = [
             1,

@@ -16,7 +16,8 @@ impl Program {
     /// Compiles and links, with `fragment` as the source of the fragment shader; `gl`'s context is
     /// current.
     pub(super) fn new(gl: Rc<glow::Context>, fragment: &str) -> Result<Program, ScreenError> {
-        // SAFETY: as for every call in this folder, `gl`'s functions are loaded and its context is current on this thread.
+        // SAFETY: as for every call in this folder, `gl`'s functions are loaded and its context is
+        // current on this thread.
         let name = unsafe { gl.create_program() }
             .map_err(|reason| ScreenError::refused("a shader program", &reason))?;
         let program = Program { gl, name };
@@ -35,7 +36,8 @@ impl Program {
 
     fn attach(&self, kind: u32, what: &'static str, source: &str) -> Result<(), ScreenError> {
         let gl = &self.gl;
-        // SAFETY: the context is current; the shader is this one's own, and once marked deleted lives on only while attached.
+        // SAFETY: the context is current; the shader is this one's own, and once marked deleted
+        // lives on only while attached.
         unsafe {
             let shader = gl
                 .create_shader(kind)

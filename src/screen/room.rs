@@ -1,11 +1,13 @@
-//! What an OpenGL driver takes for granted: where the system refuses it memory or threads, drivers crash, or wait for ever.
+//! What an OpenGL driver takes for granted: where the system refuses it memory or threads, drivers
+//! crash, or wait for ever.
 
 use std::sync::mpsc;
 use std::thread::{self, Builder};
 
 use super::ScreenError;
 
-/// More than Mesa's software renderer maps to begin with, LLVM and the heaps of its threads included: at least 760 MB were needed.
+/// More than Mesa's software renderer maps to begin with, LLVM and the heaps of its threads
+/// included: at least 760 MB were needed.
 #[cfg(target_os = "linux")]
 const ADDRESSES: u64 = 1 << 30;
 
@@ -13,7 +15,8 @@ const ADDRESSES: u64 = 1 << 30;
 #[cfg(target_os = "linux")]
 const BYTES_A_PIXEL: u64 = 64;
 
-/// Mesa's software renderer starts a thread a core, but not more than this, and some for its caches.
+/// Mesa's software renderer starts a thread a core, but not more than this, and some for its
+/// caches.
 const MOST_RENDERERS: usize = 32;
 const OTHER_THREADS: usize = 4;
 

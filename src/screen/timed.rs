@@ -47,7 +47,8 @@ pub struct Cost {
     pub read_back: Duration,
 }
 
-/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one way of pictures into it.
+/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one way of
+/// pictures into it.
 ///
 /// As with [`Offscreen`](super::Offscreen), no context is current before and after each call.
 pub struct TimedScreen {
@@ -81,7 +82,8 @@ impl DrawPixels {
                 .ok_or_else(|| ScreenError::refused("glDrawPixels", "there is no such function"))
         };
         let (window_pos, draw_pixels) = (address(c"glWindowPos2i")?, address(c"glDrawPixels")?);
-        // SAFETY: the addresses are those of the functions of these names, and the types are what OpenGL 1.4 declares for them.
+        // SAFETY: the addresses are those of the functions of these names, and the types are what
+        // OpenGL 1.4 declares for them.
         unsafe {
             Ok(DrawPixels {
                 window_pos: std::mem::transmute::<*const c_void, unsafe extern "system" fn(i32, i32)>(
@@ -100,8 +102,9 @@ impl DrawPixels {
         let size = image.size() as i32;
         let [red, green, blue, alpha] = CLEAR_COLOR;
         set_unpacking(gl);
-        // SAFETY: the context is current and has the two functions; with these pixel-store parameters the driver reads exactly
-        // size × size × 3 floats, and so many an image of this size has.
+        // SAFETY: the context is current and has the two functions; with these pixel-store
+        // parameters the driver reads exactly size × size × 3 floats, and so many an image
+        // of this size has.
         unsafe {
             for capability in FRAGMENT_CAPABILITIES {
                 gl.disable(capability);
@@ -152,7 +155,8 @@ impl TimedScreen {
     ) -> Result<(Framebuffer, Way, Rc<glow::Context>), ScreenError> {
         let gl = Rc::new(context.functions()?);
         let way = match path {
-            // SAFETY: the context is current, and made current again before the screen is used or dropped.
+            // SAFETY: the context is current, and made current again before the screen is used or
+            // dropped.
             Path::Texture => Way::Texture(unsafe { Screen::new(gl.clone(), size) }?),
             Path::DrawPixels => Way::DrawPixels(DrawPixels::load(context)?),
         };
@@ -160,7 +164,8 @@ impl TimedScreen {
         Ok((framebuffer, way, gl))
     }
 
-    /// Shows `image`, and says what each step cost. Of a texture only `rows` are replaced, as by [`Screen::upload_rows`].
+    /// Shows `image`, and says what each step cost. Of a texture only `rows` are replaced, as by
+    /// [`Screen::upload_rows`].
     ///
     /// # Errors
     /// [`ScreenError`] unless `image` has the size of the screen and the driver takes it.
@@ -171,7 +176,8 @@ impl TimedScreen {
         cost
     }
 
-    /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before the first.
+    /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before
+    /// the first.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -227,8 +233,9 @@ impl TimedScreen {
         memory::reserve(&mut self.bytes, missing)
             .map_err(|_| ScreenError::Memory { size: self.size })?;
         self.bytes.resize(length, 0);
-        // SAFETY: the context is current. Its pixel-store parameters are as they were made, and rows of four bytes a pixel have no gaps
-        // at any alignment, so that the driver writes as many bytes as are there.
+        // SAFETY: the context is current. Its pixel-store parameters are as they were made, and
+        // rows of four bytes a pixel have no gaps at any alignment, so that the driver
+        // writes as many bytes as are there.
         unsafe {
             self.gl.read_pixels(
                 0,
@@ -246,7 +253,8 @@ impl TimedScreen {
 
 impl Drop for TimedScreen {
     fn drop(&mut self) {
-        // For the fields that are dropped next. Where it fails, they had better find no context than another one.
+        // For the fields that are dropped next. Where it fails, they had better find no context
+        // than another one.
         if self.context.make_current().is_err() {
             self.context.release();
         }

@@ -1,4 +1,5 @@
-//! The memory of a frame: everything that a frame is made of lies side by side, and the next frame lies in the same place.
+//! The memory of a frame: everything that a frame is made of lies side by side, and the next frame
+//! lies in the same place.
 //!
 //! Nothing here is dropped; what frames are made of owns nothing.
 
@@ -6,7 +7,8 @@ use bumpalo::Bump;
 use bumpalo::collections::Vec;
 use bumpalo_herd::{Herd, Member};
 
-/// What frames lie in, one after the other. After the first few the system is asked for no more memory.
+/// What frames lie in, one after the other. After the first few the system is asked for no more
+/// memory.
 #[derive(Default)]
 pub(super) struct Arena {
     /// For what every frame needs, made before its first row.

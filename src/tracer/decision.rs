@@ -1,6 +1,7 @@
 //! What a pixel shows, apart from its colour.
 
-/// What was decided for a pixel: the discrete part of the picture, which a kernel gets right or wrong.
+/// What was decided for a pixel: the discrete part of the picture, which a kernel gets right or
+/// wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Decision {
     /// Nothing is hit.

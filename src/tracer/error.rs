@@ -19,7 +19,8 @@ pub enum TraceError {
         /// N.
         size: u32,
     },
-    /// The kernel [`Kernel::Listing`](crate::Kernel::Listing) and a scene that is not of the document's shape.
+    /// The kernel [`Kernel::Listing`](crate::Kernel::Listing) and a scene that is not of the
+    /// document's shape.
     #[error(
         "the kernel listing traces 2 spheres, 1 tetrahedron and 1 surface; this scene has {spheres}, {tetrahedra} and {surfaces}: \
          choose another kernel"

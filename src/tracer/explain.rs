@@ -1,7 +1,7 @@
 //! One pixel, worked through: the text of `firsthit explain` and of the viewer's inspector.
 //!
-//! Every number in it comes from the functions that trace, with the arithmetic that settled the pixel; only for printing are
-//! they turned back from view space and shortened to nine digits.
+//! Every number in it comes from the functions that trace, with the arithmetic that settled the
+//! pixel; only for printing are they turned back from view space and shortened to nine digits.
 
 use std::fmt::{self, Write as _};
 
@@ -226,7 +226,8 @@ impl<R: Real> Picture<'_, R> {
         Ok(())
     }
 
-    /// The point, the normal, the light, and equation 4-1 term by term. In the mirror's view everything is reflected, which is undone.
+    /// The point, the normal, the light, and equation 4-1 term by term. In the mirror's view
+    /// everything is reflected, which is undone.
     fn explain_solid(
         &self,
         text: &mut String,

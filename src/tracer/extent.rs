@@ -39,8 +39,9 @@ impl Extent {
         )
     }
 
-    /// The smallest that holds the shadows that all `points` cast on the screen along the eye's rays, each point thickened by
-    /// `across` to the left and right and by `along` up and down the screen, in view space.
+    /// The smallest that holds the shadows that all `points` cast on the screen along the eye's
+    /// rays, each point thickened by `across` to the left and right and by `along` up and down
+    /// the screen, in view space.
     fn of(points: &[Vector<Bounded>], across: Bounded, along: Bounded, size: u32) -> Extent {
         let half = f64::from(size) / 2.0;
         let third = Bounded::exact(1.0) / Bounded::exact(3.0);

@@ -2,10 +2,11 @@
 //!
 //! # View space
 //!
-//! The scene is turned by α instead of the eye, and measured in thirds of a pixel from the picture's centre: x right,
-//! y up, z toward the eye, a scene's length 1 being 3N/2. There the pixel (x, y) has its place on the screen at
-//! e = 3 (x − N/2, y − N/2, N/2), the eye looks along −(0, 3, 10), which is −10 w, and a ray reaches the surface at
-//! t = (y − N/2) − (N/2) · height. Directions need no unit length, so nothing is rounded that need not be: pixels and eye
+//! The scene is turned by α instead of the eye, and measured in thirds of a pixel from the
+//! picture's centre: x right, y up, z toward the eye, a scene's length 1 being 3N/2. There the
+//! pixel (x, y) has its place on the screen at e = 3 (x − N/2, y − N/2, N/2), the eye looks along
+//! −(0, 3, 10), which is −10 w, and a ray reaches the surface at t = (y − N/2) − (N/2) · height.
+//! Directions need no unit length, so nothing is rounded that need not be: pixels and eye
 //! rays are small whole or half numbers, and at α = 0 so is a scene of short binary fractions.
 
 use glam::DVec3;

@@ -2,7 +2,8 @@
 
 use super::ladder::Rung;
 
-/// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are right.
+/// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are
+/// right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InDoubt {
     /// Settled by double-doubles only.

@@ -40,7 +40,8 @@ pub(super) trait Pixels: Sync {
     fn explain(&self, column: u32, row: u32, traced: Pixel) -> String;
 }
 
-/// The pixels of a frame that can be traced row by row: their colour, but for spheres in the light, is told by the decision.
+/// The pixels of a frame that can be traced row by row: their colour, but for spheres in the light,
+/// is told by the decision.
 pub(super) trait Lines: Pixels {
     /// The frame as f64 with a bound knows it.
     fn bounded(&self) -> &Picture<'_, Bounded>;
@@ -156,7 +157,8 @@ impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
     }
 }
 
-/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many digits as it takes.
+/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many
+/// digits as it takes.
 pub(super) struct Ladder<'f> {
     scene: &'f Scene,
     stage: Stage,
@@ -173,7 +175,8 @@ pub(super) struct Ladder<'f> {
     colors: Palette<'f>,
 }
 
-/// The frame in arbitrary precision, for one thread at a time: what is found out about it for one pixel is known for the next.
+/// The frame in arbitrary precision, for one thread at a time: what is found out about it for one
+/// pixel is known for the next.
 struct Desk<'f> {
     session: Session,
     picture: Picture<'f, Expression>,
@@ -257,7 +260,8 @@ trait Question {
     fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
 }
 
-/// What the pixel at a column and a row shows, and its samples where the decision alone does not tell them.
+/// What the pixel at a column and a row shows, and its samples where the decision alone does not
+/// tell them.
 struct PixelAt(u32, u32);
 
 impl Question for PixelAt {
@@ -294,8 +298,8 @@ impl Lines for Ladder<'_> {
         &self.bounded
     }
 
-    /// They are settled once: where a face's colour lies halfway between two floats, it does so in all its pixels, and arbitrary
-    /// precision takes its time to see it.
+    /// They are settled once: where a face's colour lies halfway between two floats, it does so in
+    /// all its pixels, and arbitrary precision takes its time to see it.
     fn color(&self, decision: Decision) -> [f32; 3] {
         let settle = || self.settle(&ColorOf(decision)).0;
         *self.colors.get(decision).get_or_init(settle)

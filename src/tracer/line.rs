@@ -11,7 +11,8 @@ use crate::scene::Support;
 pub(super) struct Line<R> {
     pub(super) origin: Vector<R>,
     pub(super) direction: Direction<R>,
-    /// The sphere or plane that the origin lies on, for a ray that starts at one. It leaves it outward.
+    /// The sphere or plane that the origin lies on, for a ray that starts at one. It leaves it
+    /// outward.
     pub(super) leaves: Option<Support>,
 }
 

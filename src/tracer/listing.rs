@@ -1,23 +1,27 @@
 //! The document's listings, Code 2-1 to 6-1, as they are printed: the baseline.
 //!
-//! In f64, pixel by pixel, in the document's order and under the document's names, so that it can be laid beside this file.
-//! Where a listing and the equation that it implements disagree, the listing is kept: each such place is marked
-//! `Slip`, with what the equation says. Every other kernel follows the equations.
+//! In f64, pixel by pixel, in the document's order and under the document's names, so that it can
+//! be laid beside this file. Where a listing and the equation that it implements disagree, the
+//! listing is kept: each such place is marked `Slip`, with what the equation says. Every other
+//! kernel follows the equations.
 //!
 //! What the document leaves out is filled in with the least:
-//! - `....//parameters initializing`: a local variable starts at zero. A flag starts so that the printed lines, which only
-//!   ever change it one way, have something to change; it is started again as seldom as they can bear. `IntSphere` must be
-//!   true again before every sphere, or nothing would be hit after the first miss. `IntTriangle` must be false again before
-//!   every tetrahedron, or everything would be hit after the first hit, but no printed line and no need makes it false
-//!   between two faces. A flag that starts again with every call is an `Option` here.
-//! - Of the solids and the surface the one nearest to the pixel is seen, as among the faces in Code 3-2; of several at the
-//!   same distance the first, the surface last.
-//! - The document's numbers are read from the scene: 250 is half of the picture's size, `pow`'s 1000 the exponent,
-//!   the factor 0.5 of a mirrored colour the reflectance.
+//! - `....//parameters initializing`: a local variable starts at zero. A flag starts so that the
+//!   printed lines, which only ever change it one way, have something to change; it is started
+//!   again as seldom as they can bear. `IntSphere` must be true again before every sphere, or
+//!   nothing would be hit after the first miss. `IntTriangle` must be false again before every
+//!   tetrahedron, or everything would be hit after the first hit, but no printed line and no need
+//!   makes it false between two faces. A flag that starts again with every call is an `Option`
+//!   here.
+//! - Of the solids and the surface the one nearest to the pixel is seen, as among the faces in Code
+//!   3-2; of several at the same distance the first, the surface last.
+//! - The document's numbers are read from the scene: 250 is half of the picture's size, `pow`'s
+//!   1000 the exponent, the factor 0.5 of a mirrored colour the reflectance.
 //!
-//! Two slips of the document are not here. Section III prints LookAt = (0, 0.3, 0), whose rays never leave the plane of the
-//! screen: (0, 0.3, 1) is Code 6-1 at α = 0. And that α gathers a rounding error with every `alpha+0.3`, and jumps where it
-//! starts again at 0 instead of at 2π, is up to whoever advances it.
+//! Two slips of the document are not here. Section III prints LookAt = (0, 0.3, 0), whose rays
+//! never leave the plane of the screen: (0, 0.3, 1) is Code 6-1 at α = 0. And that α gathers a
+//! rounding error with every `alpha+0.3`, and jumps where it starts again at 0 instead of at 2π, is
+//! up to whoever advances it.
 
 mod color;
 mod inter_point;
@@ -140,8 +144,8 @@ impl<'a> Listing<'a> {
                 in_shadow: false,
             },
             point,
-            // Section III credits this, which only looks a normal up, with the intersection, which is
-            // GetInterPoint_Triangle.
+            // Section III credits this, which only looks a normal up, with the intersection, which
+            // is GetInterPoint_Triangle.
             normal: self.t[face].normal,
             color: self.t_color,
         })
@@ -149,14 +153,16 @@ impl<'a> Listing<'a> {
 
     /// Equation 4-1 times the solid's colour.
     ///
-    /// Slip (Code 5-1): LigDir is the way the light travels, and shadows are traced against it, but Equation 4-1 is handed
-    /// it as l, which points toward the light. So solids are lit from below, and their shadows are thrown from above.
+    /// Slip (Code 5-1): LigDir is the way the light travels, and shadows are traced against it, but
+    /// Equation 4-1 is handed it as l, which points toward the light. So solids are lit from
+    /// below, and their shadows are thrown from above.
     ///
-    /// Slip (Code 5-1): v points back along the ray that found the point, for a mirrored one toward the surface. Here it is
-    /// LookAt for those too, so a mirror image has its highlights where the solid itself has them.
+    /// Slip (Code 5-1): v points back along the ray that found the point, for a mirrored one toward
+    /// the surface. Here it is LookAt for those too, so a mirror image has its highlights where
+    /// the solid itself has them.
     ///
-    /// Slip (Code 5-1): section V.1 lets a shadow fall on any point, but nothing asks for one here: only the surface
-    /// receives shadows.
+    /// Slip (Code 5-1): section V.1 lets a shadow fall on any point, but nothing asks for one here:
+    /// only the surface receives shadows.
     fn shaded(&self, met: &Met) -> DVec3 {
         get_pixel_color(self.lig_dir, self.look_at, met.normal, self.scene) * met.color
     }
@@ -192,14 +198,16 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// Code 5-1, from the surface's own colour on: each later object overwrites what an earlier one has drawn.
+    /// Code 5-1, from the surface's own colour on: each later object overwrites what an earlier one
+    /// has drawn.
     fn surface_at(&self, interpoint0: DVec3) -> (Decision, DVec3) {
         let mut drawn = (Decision::Surface, self.sur.color);
         if self.stage >= Stage::Reflection {
-            // LookAt points toward the eye, so this is the way that the eye's ray goes on from the surface.
+            // LookAt points toward the eye, so this is the way that the eye's ray goes on from the
+            // surface.
             let pro_dir = -get_projection(self.look_at, DVec3::Y);
-            // Slip (Code 5-1): the first solid along the ray is mirrored; here it is the last in this order that the line
-            // meets at all.
+            // Slip (Code 5-1): the first solid along the ray is mirrored; here it is the last in
+            // this order that the line meets at all.
             for mirrored in [
                 self.meet_sphere(0, interpoint0, pro_dir),
                 self.meet_sphere(1, interpoint0, pro_dir),
@@ -215,8 +223,9 @@ impl<'a> Listing<'a> {
         let [sphere1, sphere2] = &self.spheres;
         let ligtemp = -self.lig_dir;
         let in_shadow = get_inter_point_sphere(interpoint0, ligtemp, sphere1).is_some()
-            // Slip (Code 5-1): sphere 2 casts its shadow along +LigDir, away from the light. Since Code 3-1 never asks for
-            // t > 0, both ways are one line, and the shadow falls where it should.
+            // Slip (Code 5-1): sphere 2 casts its shadow along +LigDir, away from the light. Since
+            // Code 3-1 never asks for t > 0, both ways are one line, and the shadow falls where it
+            // should.
             || get_inter_point_sphere(interpoint0, self.lig_dir, sphere2).is_some()
             || get_inter_point_tetrahedron(interpoint0, ligtemp, &self.t).is_some();
         if in_shadow {

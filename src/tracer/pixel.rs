@@ -91,8 +91,8 @@ impl<'f, R: Real> Picture<'f, R> {
         }
     }
 
-    /// What the pixel at `column` from the left and `row` from the bottom shows, and the normal there where it shows a sphere in the
-    /// light: all else that is seen has one colour.
+    /// What the pixel at `column` from the left and `row` from the bottom shows, and the normal
+    /// there where it shows a sphere in the light: all else that is seen has one colour.
     pub(super) fn decide(&self, column: u32, row: u32) -> Decided<R> {
         match self.stage {
             Stage::Image => Ok((Decision::Quadrant(quadrant(column, row, self.size)), None)),
@@ -214,7 +214,8 @@ impl<'f, R: Real> Picture<'f, R> {
         })
     }
 
-    /// Where an eye ray meets the surface's plane: its parameter, and the point, whose height is known without any rounding.
+    /// Where an eye ray meets the surface's plane: its parameter, and the point, whose height is
+    /// known without any rounding.
     pub(super) fn surface_point(
         &self,
         floor: &Floor<'_, R>,

@@ -1,10 +1,12 @@
 //! Threads that share the bands of a frame, for as long as the tracer lives.
 //!
-//! A frame takes tenths of a millisecond, so handing it out must take microseconds: bands are claimed from counters, the caller
-//! claims too, and the frame is finished when its *bands* are. A worker that the system has put aside before its first band is
-//! not waited for. Each thread has a counter of its own, for bands next to each other that are its own in every frame, since their
-//! memory lies in its cache; when they are gone it helps the others. Threads that wait look for a while before they sleep; between
-//! frames that follow each other at once, none does, and the system is not called.
+//! A frame takes tenths of a millisecond, so handing it out must take microseconds: bands are
+//! claimed from counters, the caller claims too, and the frame is finished when its *bands* are. A
+//! worker that the system has put aside before its first band is not waited for. Each thread has a
+//! counter of its own, for bands next to each other that are its own in every frame, since their
+//! memory lies in its cache; when they are gone it helps the others. Threads that wait look for a
+//! while before they sleep; between frames that follow each other at once, none does, and the
+//! system is not called.
 
 use std::any::Any;
 use std::io;
@@ -16,12 +18,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle, Thread};
 use std::time::{Duration, Instant};
 
-/// The most threads of a pool. With four times as many the memory maps of a process run out on Linux, and where a new thread finds
-/// none for its signal stack, the standard library ends the process.
+/// The most threads of a pool. With four times as many the memory maps of a process run out on
+/// Linux, and where a new thread finds none for its signal stack, the standard library ends the
+/// process.
 const MOST: usize = 4096;
 
-/// How long a thread looks for what it waits for before it sleeps: a little longer than a small frame needs on one thread before
-/// its first band, or after its last.
+/// How long a thread looks for what it waits for before it sleeps: a little longer than a small
+/// frame needs on one thread before its first band, or after its last.
 const LOOK: Duration = Duration::from_micros(100);
 
 /// Some threads, of which the caller's is one.
@@ -39,11 +42,13 @@ struct Job<'w> {
 
 /// What the threads know of each other.
 struct Shared {
-    /// For each thread, how many of the bands that it is to begin with no thread has claimed; the last ones go first.
+    /// For each thread, how many of the bands that it is to begin with no thread has claimed; the
+    /// last ones go first.
     unclaimed: Vec<Counter>,
     /// Bands of the job that are not finished: those, and the claimed ones that somebody works at.
     unfinished: Counter,
-    /// The job, on the stack of the caller. To be touched only between claiming a band and reporting it finished.
+    /// The job, on the stack of the caller. To be touched only between claiming a band and
+    /// reporting it finished.
     job: AtomicPtr<Job<'static>>,
     /// Counts jobs: workers wait for the next.
     posted: Counter,
@@ -62,7 +67,8 @@ struct Shared {
 struct Counter(AtomicUsize);
 
 impl Pool {
-    /// A pool of `threads` threads, the caller's among them; 0 is one a core, or as many as the system gives.
+    /// A pool of `threads` threads, the caller's among them; 0 is one a core, or as many as the
+    /// system gives.
     ///
     /// # Errors
     /// Where the system refuses them.
@@ -108,8 +114,8 @@ impl Pool {
         self.workers.len() + 1
     }
 
-    /// Hands out `parts`: calls `work` once with each, the number of the thread that it is called on, and that of the part. Returns when
-    /// all have been worked at.
+    /// Hands out `parts`: calls `work` once with each, the number of the thread that it is called
+    /// on, and that of the part. Returns when all have been worked at.
     ///
     /// # Panics
     /// Where `work` does, as it does.
@@ -128,8 +134,9 @@ impl Pool {
         });
     }
 
-    /// Calls `work` once for each band from 0 to before `bands`, with the number of the thread that it is called on, from 0 to
-    /// before [`Pool::threads`], and that of the band. Returns when all bands are finished.
+    /// Calls `work` once for each band from 0 to before `bands`, with the number of the thread that
+    /// it is called on, from 0 to before [`Pool::threads`], and that of the band. Returns when
+    /// all bands are finished.
     ///
     /// # Panics
     /// Where a band does, as it does; with workers, after all other bands are finished.
@@ -139,8 +146,9 @@ impl Pool {
         }
         let shared = &*self.shared;
         let job = Job { work: &work, bands };
-        // No worker has a band now, because `&mut self` lets in one caller at a time, and the one before left when all bands were
-        // finished. From the first store into `unclaimed` on, until `wait` returns, `job` must stay where it is: nothing between
+        // No worker has a band now, because `&mut self` lets in one caller at a time, and the one
+        // before left when all bands were finished. From the first store into `unclaimed`
+        // on, until `wait` returns, `job` must stay where it is: nothing between
         // may unwind.
         shared
             .job
@@ -152,8 +160,9 @@ impl Pool {
         }
         shared.posted.0.fetch_add(1, SeqCst);
         for (asleep, worker) in shared.asleep.iter().zip(&self.workers).take(bands) {
-            // In the one order of all `SeqCst`, either the worker's look at `posted`, which follows its store, comes after the
-            // addition above and finds the job; or this load comes after the worker's store and finds that it sleeps.
+            // In the one order of all `SeqCst`, either the worker's look at `posted`, which follows
+            // its store, comes after the addition above and finds the job; or this load
+            // comes after the worker's store and finds that it sleeps.
             if asleep.load(SeqCst) {
                 worker.thread().unpark();
             }
@@ -179,19 +188,24 @@ impl Shared {
         for owner in (number..self.unclaimed.len()).chain(0..number) {
             let unclaimed = &self.unclaimed[owner].0;
             while let Ok(rest) = unclaimed.fetch_update(Acquire, Relaxed, claim) {
-                // SAFETY: this thread has claimed a band, and has not reported it finished. Whatever it believed to be going on before
-                // (it may have slept through any number of jobs between two instructions), the band is one of the job that the
-                // counter was last stored for, and the caller cannot leave `run`, where that job lies, before the band is reported
-                // below. The store was after the one into `job`, which claiming, a read-modify-write of the stored value or of
-                // one that follows from it, therefore makes visible; and there is no later store into `job` before the
-                // caller has left. The lifetime that the pointer has lost is longer than this turn of the loop.
+                // SAFETY: this thread has claimed a band, and has not reported it finished.
+                // Whatever it believed to be going on before (it may have slept
+                // through any number of jobs between two instructions), the band is one of the job
+                // that the counter was last stored for, and the caller cannot leave
+                // `run`, where that job lies, before the band is reported
+                // below. The store was after the one into `job`, which claiming, a
+                // read-modify-write of the stored value or of one that follows from
+                // it, therefore makes visible; and there is no later store into `job` before the
+                // caller has left. The lifetime that the pointer has lost is longer than this turn
+                // of the loop.
                 let job = unsafe { &*self.job.load(Relaxed) };
                 let band = self.first(owner, job.bands) + rest - 1;
                 let work = AssertUnwindSafe(|| (job.work)(number, band));
                 if let Err(panic) = catch_unwind(work) {
                     lock(&self.panics).push(panic);
                 }
-                // From here on the job is not touched. The caller, which sees 0, sees what all bands have written.
+                // From here on the job is not touched. The caller, which sees 0, sees what all
+                // bands have written.
                 if self.unfinished.0.fetch_sub(1, Release) == 1 && number != 0 {
                     self.wake_caller();
                 }
@@ -206,15 +220,17 @@ impl Shared {
             return;
         }
         *lock(&self.caller) = Some(thread::current());
-        // Whoever finishes the last band locks the same mutex afterwards: before this thread did, and then it is seen here that all are
-        // finished; or after, and then it finds this thread and wakes it.
+        // Whoever finishes the last band locks the same mutex afterwards: before this thread did,
+        // and then it is seen here that all are finished; or after, and then it finds this
+        // thread and wakes it.
         while !finished() {
             thread::park();
         }
         *lock(&self.caller) = None;
     }
 
-    /// The handle stays: who comes late, in another job, wakes a caller that looks and sleeps again.
+    /// The handle stays: who comes late, in another job, wakes a caller that looks and sleeps
+    /// again.
     fn wake_caller(&self) {
         if let Some(caller) = &*lock(&self.caller) {
             caller.unpark();
@@ -314,7 +330,8 @@ mod tests {
         assert!(counts.eq(std::iter::repeat_n(1, bands)));
     }
 
-    /// With the job elsewhere on the stack, where the next one is not: a worker that takes one for the other is found out.
+    /// With the job elsewhere on the stack, where the next one is not: a worker that takes one for
+    /// the other is found out.
     #[inline(never)]
     fn run_job_deeper(pool: &mut Pool, bands: usize) {
         let depth = std::hint::black_box([0u8; 2000]);

@@ -1,8 +1,10 @@
-//! What a pixel shows, decided from the picture's definition in exact rationals, at angles whose sine and cosine are rational.
+//! What a pixel shows, decided from the picture's definition in exact rationals, at angles whose
+//! sine and cosine are rational.
 //!
-//! World space, lengths of the scene, equation 3-1 with its textbook discriminant, a ray that is really mirrored, polyhedra as
-//! systems of linear inequalities: it shares no formula with the tracer. The only roots in a decision are those of
-//! discriminants, so every sign is that of P + Q√C or of P + √B − √C.
+//! World space, lengths of the scene, equation 3-1 with its textbook discriminant, a ray that is
+//! really mirrored, polyhedra as systems of linear inequalities: it shares no formula with the
+//! tracer. The only roots in a decision are those of discriminants, so every sign is that of P +
+//! Q√C or of P + √B − √C.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -61,7 +63,8 @@ fn along(origin: &Vector, direction: &Vector, t: &Surd) -> Point {
     [0, 1, 2].map(|i| &Surd::from(origin[i].clone()) + &t.scaled(&direction[i]))
 }
 
-/// The sine and the cosine of an angle where both are rational: (a, b, c) for a/c and b/c with a² + b² = c².
+/// The sine and the cosine of an angle where both are rational: (a, b, c) for a/c and b/c with a² +
+/// b² = c².
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turn(i32, i32, i32);
 
@@ -84,7 +87,8 @@ impl HalfSpace {
     }
 }
 
-/// A tetrahedron's faces in their order, or the four sides of the surface with its plane from above and from below.
+/// A tetrahedron's faces in their order, or the four sides of the surface with its plane from above
+/// and from below.
 struct Polyhedron(Vec<HalfSpace>);
 
 impl Polyhedron {
@@ -138,8 +142,9 @@ impl Polyhedron {
         last.filter(|(_, t)| self.contains(&along(origin, direction, &t.clone().into())))
     }
 
-    /// Whether any t > 0 fulfils f + g t ≤ 0 for every side: by Fourier and Motzkin's elimination of t, if and only if every
-    /// inequality without t holds and no lower bound of t exceeds an upper one.
+    /// Whether any t > 0 fulfils f + g t ≤ 0 for every side: by Fourier and Motzkin's elimination
+    /// of t, if and only if every inequality without t holds and no lower bound of t exceeds an
+    /// upper one.
     fn is_ahead(&self, origin: &Point, direction: &Vector) -> bool {
         let all: Vec<(Surd, Relaxed)> = self
             .0
@@ -223,7 +228,8 @@ impl Solid {
                 let c =
                     &(&(&squares[0] + &squares[1]) + &squares[2]) - &Surd::from(radius * radius);
                 let discriminant = &b.times(&b) - &c.scaled(&a);
-                // t_far = (−b + √D)/a > 0: where b < 0 always, otherwise where D > b², which is c < 0.
+                // t_far = (−b + √D)/a > 0: where b < 0 always, otherwise where D > b², which is c <
+                // 0.
                 discriminant.sign().is_ge() && (b.sign().is_lt() || c.sign().is_lt())
             }
             Solid::Tetrahedron(faces) => faces.is_ahead(origin, direction),

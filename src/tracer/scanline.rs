@@ -1,7 +1,8 @@
 //! The scan-line tracer: a frame, row by row, from the left to the right.
 //!
-//! Most pixels show what their left neighbour shows. So a pixel is not asked what it shows: it is found where
-//! *edges* cross its row, and between two crossings, in a *span*, all pixels show the same.
+//! Most pixels show what their left neighbour shows. So a pixel is not asked what it shows: it is
+//! found where *edges* cross its row, and between two crossings, in a *span*, all pixels show the
+//! same.
 //!
 //! ```text
 //!     frame → edge table → crossings of 8 rows → active edges → spans → what is visible → samples
@@ -16,24 +17,29 @@
 //! ```
 //!
 //! - `prepare/` makes a frame: solids and surface, and the edges and paints that they bring.
-//! - `edges/` holds the borders on the screen at which a row may change what it shows. Eye rays are parallel, and so
-//!   are rays to the light: every silhouette, edge of a face, outline of a shadow or of a mirror image is a straight
-//!   line or an ellipse, and where it crosses a row is a root, known within a bound. So the *possible* columns of a
-//!   region and its *certain* ones may differ: what lies between them is asked pixel by pixel.
-//! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the next row, where
-//!   mostly nothing but places has changed.
-//! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is in front by a
-//!   plane that keeps solids apart (`separation`) or by a test of depth (`depth`), and what of it is seen (`resolve`).
-//! - `shade/` computes the pixels of spheres, many at a time: within bounds for the kernels that are right
-//!   (`certified`), or without (`unchecked`). Columns turned away from the light are found as a span, too (`spans`).
-//! - `write/` fills spans of one paint, and leaves out what stands there from the frame before (`history`).
+//! - `edges/` holds the borders on the screen at which a row may change what it shows. Eye rays are
+//!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
+//!   or of a mirror image is a straight line or an ellipse, and where it crosses a row is a root,
+//!   known within a bound. So the *possible* columns of a region and its *certain* ones may differ:
+//!   what lies between them is asked pixel by pixel.
+//! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the
+//!   next row, where mostly nothing but places has changed.
+//! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is
+//!   in front by a plane that keeps solids apart (`separation`) or by a test of depth (`depth`),
+//!   and what of it is seen (`resolve`).
+//! - `shade/` computes the pixels of spheres, many at a time: within bounds for the kernels that
+//!   are right (`certified`), or without (`unchecked`). Columns turned away from the light are
+//!   found as a span, too (`spans`).
+//! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
+//!   (`history`).
 //!
-//! All of this is f64 with proven bounds. A pixel that they leave in doubt is asked by itself (`ladder.rs`), by the
-//! formulas that everything here is derived from: `pixel.rs` is the definition, this is how it is computed fast.
+//! All of this is f64 with proven bounds. A pixel that they leave in doubt is asked by itself
+//! (`ladder.rs`), by the formulas that everything here is derived from: `pixel.rs` is the
+//! definition, this is how it is computed fast.
 //!
-//! What not to try again: closures given to `map` inside of vector code, which are compiled without the vector
-//! instructions around them; 16 rows at once; shading the runs of a sphere together at the end of some rows. What each
-//! step of the way brought is told by the commits.
+//! What not to try again: closures given to `map` inside of vector code, which are compiled without
+//! the vector instructions around them; 16 rows at once; shading the runs of a sphere together at
+//! the end of some rows. What each step of the way brought is told by the commits.
 
 mod active;
 #[cfg(test)]
@@ -152,8 +158,9 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         scratch.shade.cache.begin(self.balls);
     }
 
-    /// Traces neighbouring rows into their samples, and their decisions where they are asked for. How many pixels double-doubles and
-    /// arbitrary precision had to settle. `scratch` is prepared for the frame. With a `memory` of the rows, which holds for `samples`, only
+    /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
+    /// How many pixels double-doubles and arbitrary precision had to settle. `scratch` is
+    /// prepared for the frame. With a `memory` of the rows, which holds for `samples`, only
     /// what differs is written.
     pub(super) fn trace(
         &self,

@@ -39,7 +39,8 @@ impl<R: Real> Shading<R> {
         }
     }
 
-    /// k_a I_a: what a point in shadow shows of its colour, and all that a shadow on the surface shows.
+    /// k_a I_a: what a point in shadow shows of its colour, and all that a shadow on the surface
+    /// shows.
     pub(super) fn ambient(&self) -> Vector<R> {
         self.ambient
     }
@@ -49,7 +50,8 @@ impl<R: Real> Shading<R> {
         self.to_light.vector.divided_by(self.to_light_length)
     }
 
-    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with in equation 4-1.
+    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with in equation
+    /// 4-1.
     pub(super) fn coefficients(&self) -> [[R; 3]; 3] {
         let (a, d, s) = (self.ambient, self.diffuse, self.specular);
         [[a.x, d.x, s.x], [a.y, d.y, s.y], [a.z, d.z, s.z]]
@@ -83,8 +85,8 @@ impl<R: Real> Shading<R> {
         } else {
             none
         };
-        // 1 − n·h = |n − h|²/2 for unit vectors: small, and known to a small relative error, just where the highlight is
-        // bright.
+        // 1 − n·h = |n − h|²/2 for unit vectors: small, and known to a small relative error, just
+        // where the highlight is bright.
         let one_minus = self
             .halfway
             .map(|halfway| (normal.divided_by(length) - halfway).squared_length() * R::exact(0.5));
@@ -107,7 +109,8 @@ impl<R: Real> Shading<R> {
     }
 }
 
-/// h = (v + l)/|v + l|, where `looking` is the way the eye's rays go, the opposite of v; v + l is not 0.
+/// h = (v + l)/|v + l|, where `looking` is the way the eye's rays go, the opposite of v; v + l is
+/// not 0.
 pub(super) fn halfway<R: Real>(looking: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
     let v = -looking.vector.divided_by(looking.squared_length.sqrt());
     let sum = v + to_light.vector.divided_by(to_light.squared_length.sqrt());

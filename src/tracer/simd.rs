@@ -4,7 +4,8 @@ use std::fmt;
 
 use fearless_simd::Level;
 
-/// A set of vector instructions that this machine has. It changes the speed of a tracer and no bit of a picture.
+/// A set of vector instructions that this machine has. It changes the speed of a tracer and no bit
+/// of a picture.
 #[derive(Clone, Copy)]
 pub struct Simd(pub(super) Level);
 

@@ -16,13 +16,15 @@ pub(super) struct Sphere<R> {
 }
 
 impl<R: Real> Sphere<R> {
-    /// The moment (o − c) × d of a line about the centre: its length is |d| times the line's distance from the centre.
+    /// The moment (o − c) × d of a line about the centre: its length is |d| times the line's
+    /// distance from the centre.
     fn moment(&self, line: &Line<R>) -> Vector<R> {
         (line.origin - self.center).cross(line.direction.vector)
     }
 
-    /// |d|²R² − |(o − c) × d|², which is the discriminant of equation 3-1 by Lagrange's identity. Here nothing large
-    /// cancels: the textbook's (d·(o − c))² − |d|²(|o − c|² − R²) loses every digit for a small sphere far away.
+    /// |d|²R² − |(o − c) × d|², which is the discriminant of equation 3-1 by Lagrange's identity.
+    /// Here nothing large cancels: the textbook's (d·(o − c))² − |d|²(|o − c|² − R²) loses every
+    /// digit for a small sphere far away.
     fn discriminant(&self, line: &Line<R>, moment: Vector<R>) -> R {
         line.direction.squared_length * self.radius.squared() - moment.squared_length()
     }
@@ -37,7 +39,8 @@ impl<R: Real> Sphere<R> {
         let root = discriminant.sqrt();
         let d = line.direction;
         let depth = ((self.center - line.origin).dot(d.vector) - root) / d.squared_length;
-        // Across the line the normal is d × ((o − c) × d) / |d|², along it −√D d / |d|²: no difference of points far away.
+        // Across the line the normal is d × ((o − c) × d) / |d|², along it −√D d / |d|²: no
+        // difference of points far away.
         let normal = (d.vector.cross(moment) - d.vector * root).divided_by(d.squared_length);
         Ok(Some(Hit {
             depth,
@@ -52,8 +55,8 @@ impl<R: Real> Sphere<R> {
         }))
     }
 
-    /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line meets it, and the ray
-    /// moves toward the centre.
+    /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line
+    /// meets it, and the ray moves toward the centre.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         if ray.leaves == Some(self.support) {
             return Ok(false);

@@ -1,10 +1,11 @@
 //! Rows written past the caches, for pictures that do not fit into them.
 //!
-//! A plain store first fetches the cache line that it writes to, and pushes another one out. Where nobody reads a picture before it has
-//! left the cache, both are for nothing. So a row is traced into a buffer that stays in the cache, and copied from there by stores
-//! that go to memory directly. Where a picture fits, these are slower: on an AMD EPYC (Zen 5, 32 MiB of last-level cache), one thread
-//! of `exact` took 0.20 instead of 0.17 ms at N = 500, 0.99 instead of 0.83 at 1400, but 1.98 instead of 2.15 at 2000 and 7.9 instead
-//! of 8.8 at 4000.
+//! A plain store first fetches the cache line that it writes to, and pushes another one out. Where
+//! nobody reads a picture before it has left the cache, both are for nothing. So a row is traced
+//! into a buffer that stays in the cache, and copied from there by stores that go to memory
+//! directly. Where a picture fits, these are slower: on an AMD EPYC (Zen 5, 32 MiB of last-level
+//! cache), one thread of `exact` took 0.20 instead of 0.17 ms at N = 500, 0.99 instead of 0.83 at
+//! 1400, but 1.98 instead of 2.15 at 2000 and 7.9 instead of 8.8 at 4000.
 
 /// The bytes of the largest picture that is stored as usual: N is 1672.
 pub(super) const PLAIN: usize = 32 << 20;
@@ -28,8 +29,9 @@ pub(super) fn copy(from: &[f32], to: &mut [f32]) {
     to_tail.copy_from_slice(from_tail);
     for (to, from) in to_lines.iter_mut().zip(from_lines) {
         for place in (0..LINE).step_by(VECTOR) {
-            // SAFETY: both lines have 16 floats, of which these are four, and `to` begins at a multiple of 64 bytes: `head` floats on from
-            // where the row begins, and whole lines on from there.
+            // SAFETY: both lines have 16 floats, of which these are four, and `to` begins at a
+            // multiple of 64 bytes: `head` floats on from where the row begins, and
+            // whole lines on from there.
             unsafe {
                 let vector = _mm_loadu_ps(from.as_ptr().add(place));
                 _mm_stream_ps(to.as_mut_ptr().add(place), vector);

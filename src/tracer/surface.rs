@@ -25,8 +25,9 @@ impl<R: Real> Surface<R> {
         ]
     }
 
-    /// The four numbers that are not negative in the square, each as a constant and what a column and a row add to it, for points
-    /// `origin` + X · `per_column` + Y · `per_row` of its plane. Points and square may be scaled by one positive factor, which is in
+    /// The four numbers that are not negative in the square, each as a constant and what a column
+    /// and a row add to it, for points `origin` + X · `per_column` + Y · `per_row` of its
+    /// plane. Points and square may be scaled by one positive factor, which is in
     /// `half` as well, half the length of a side.
     pub(super) fn sides(
         &self,
@@ -49,14 +50,17 @@ impl<R: Real> Surface<R> {
         self.contains_scaled(point, self.half_width)
     }
 
-    /// The same with point and square scaled by one positive factor, which is in `half_width` already.
+    /// The same with point and square scaled by one positive factor, which is in `half_width`
+    /// already.
     fn contains_scaled(&self, point: Vector<R>, half_width: R) -> Result<bool, R::Doubt> {
-        // Each side by itself: on the middle line a coordinate's sign would be in doubt, and nobody asks for it.
+        // Each side by itself: on the middle line a coordinate's sign would be in doubt, and nobody
+        // asks for it.
         let [a, b] = self.along_sides(point);
         all([a, -a, b, -b].map(|coordinate| Ok((half_width - coordinate).sign()?.is_ge())))
     }
 
-    /// Whether the ray meets the square at some t > 0, from either side; one that lies in its plane, if it meets it there.
+    /// Whether the ray meets the square at some t > 0, from either side; one that lies in its
+    /// plane, if it meets it there.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         let climb = ray.direction.vector.y;
         let rise = self.height - ray.origin.y;
@@ -69,7 +73,8 @@ impl<R: Real> Surface<R> {
             (Ordering::Equal, Ordering::Equal) => self.is_ahead_in_plane(ray),
             (Ordering::Equal, _) | (_, Ordering::Equal) => Ok(false),
             (up, toward) if up == toward => {
-                // The point at t = rise/climb, times |climb|: no division, so that the border is as sharp as can be.
+                // The point at t = rise/climb, times |climb|: no division, so that the border is as
+                // sharp as can be.
                 let (climb, rise) = if up.is_gt() {
                     (climb, rise)
                 } else {
@@ -84,7 +89,8 @@ impl<R: Real> Surface<R> {
         }
     }
 
-    /// The same for a ray in the square's own plane: the slabs between opposite sides, cut out of t > 0.
+    /// The same for a ray in the square's own plane: the slabs between opposite sides, cut out of t
+    /// > 0.
     fn is_ahead_in_plane(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         let origin = self.along_sides(ray.origin);
         let direction = self.along_sides(ray.direction.vector);

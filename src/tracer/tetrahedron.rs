@@ -1,11 +1,12 @@
 //! A line and a tetrahedron: equations 3-2 and 3-3 for a closed, watertight solid.
 //!
-//! A line meets a convex solid where it has entered every face that it enters before it leaves any that it leaves.
-//! Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To compare two faces i and j, the quotients
-//! are not needed: f_i g_j − f_j g_i = −((n_i × n_j) × d)·(o − a) for a vertex a of both, and n_i × n_j is the edge that
-//! they share, times six volumes. So every decision about a line is the sign of one number an edge, the *edge function*
-//! of equation 3-3: on which side of the edge the line passes. The two faces beside an edge read the same number, and a
-//! line cannot slip between them.
+//! A line meets a convex solid where it has entered every face that it enters before it leaves any
+//! that it leaves. Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To
+//! compare two faces i and j, the quotients are not needed: f_i g_j − f_j g_i = −((n_i × n_j) ×
+//! d)·(o − a) for a vertex a of both, and n_i × n_j is the edge that they share, times six volumes.
+//! So every decision about a line is the sign of one number an edge, the *edge function*
+//! of equation 3-3: on which side of the edge the line passes. The two faces beside an edge read
+//! the same number, and a line cannot slip between them.
 
 use std::cmp::Ordering;
 
@@ -14,8 +15,8 @@ use super::vector::Vector;
 use crate::number::{Real, all};
 use crate::scene::Support;
 
-/// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from outside, for a tetrahedron
-/// whose edges 0→1, 0→2, 0→3 are right-handed.
+/// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from
+/// outside, for a tetrahedron whose edges 0→1, 0→2, 0→3 are right-handed.
 pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// The edge that faces i < j share, from its first to its last vertex along n_i × n_j.
@@ -63,7 +64,8 @@ impl<R: Real> HalfSpace<R> {
 
 /// A tetrahedron as lines of one direction meet it.
 pub(super) struct Sight<R> {
-    /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0 where it runs along.
+    /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
+    /// where it runs along.
     crossing: [Ordering; 4],
     /// g itself.
     speed: [R; 4],
@@ -79,7 +81,8 @@ impl<R> Sight<R> {
 }
 
 impl<R: Real> Tetrahedron<R> {
-    /// `right_handed` (the edges 0→1, 0→2, 0→3 are), `supports` and `facing_light` are decided where the scene is read.
+    /// `right_handed` (the edges 0→1, 0→2, 0→3 are), `supports` and `facing_light` are decided
+    /// where the scene is read.
     pub(super) fn new(
         vertices: [Vector<R>; 4],
         right_handed: bool,
@@ -167,8 +170,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// Where the edge function of `EDGES[edge]` is not negative, for its faces i < j. Where lines enter i and leave j that is where
-    /// t_i ≤ t_j; where they enter both, where t_i ≥ t_j.
+    /// Where the edge function of `EDGES[edge]` is not negative, for its faces i < j. Where lines
+    /// enter i and leave j that is where t_i ≤ t_j; where they enter both, where t_i ≥ t_j.
     fn side(&self, edge: usize, sight: &Sight<R>) -> HalfSpace<R> {
         HalfSpace {
             normal: sight.moments[edge],
@@ -178,8 +181,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// The half-spaces that lines of one direction which meet the solid lie in: they enter no face after they have left one,
-    /// and are outside of none that they run along.
+    /// The half-spaces that lines of one direction which meet the solid lie in: they enter no face
+    /// after they have left one, and are outside of none that they run along.
     pub(super) fn met<'a>(
         &'a self,
         sight: &'a Sight<R>,
@@ -199,7 +202,8 @@ impl<R: Real> Tetrahedron<R> {
         beside.chain(pairs)
     }
 
-    /// The half-spaces that points lie in from which a ray meets the solid at some t > 0: every face that it leaves lies ahead.
+    /// The half-spaces that points lie in from which a ray meets the solid at some t > 0: every
+    /// face that it leaves lies ahead.
     pub(super) fn ahead<'a>(
         &'a self,
         sight: &'a Sight<R>,
@@ -213,7 +217,8 @@ impl<R: Real> Tetrahedron<R> {
         all(self.met(sight).map(|half_space| half_space.holds(line)))
     }
 
-    /// Two faces that lines of one direction enter, the lower first, and where they enter the lower one last.
+    /// Two faces that lines of one direction enter, the lower first, and where they enter the lower
+    /// one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
         sight: &'a Sight<R>,
@@ -224,7 +229,8 @@ impl<R: Real> Tetrahedron<R> {
         })
     }
 
-    /// The face that a line enters last, and so the solid; of several at once, the lowest. Every line enters one.
+    /// The face that a line enters last, and so the solid; of several at once, the lowest. Every
+    /// line enters one.
     fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<usize, R::Doubt> {
         let mut entering = faces(sight, Ordering::Less);
         let mut last = entering.next().unwrap_or(0);
@@ -256,7 +262,8 @@ impl<R: Real> Tetrahedron<R> {
         }))
     }
 
-    /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it leaves lies ahead.
+    /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it
+    /// leaves lies ahead.
     pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
         all(self.ahead(sight).map(|half_space| half_space.holds(ray)))
     }

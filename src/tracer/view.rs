@@ -2,9 +2,9 @@
 //!
 //! # The mirror
 //!
-//! What a ray sees in the surface is what the same ray, going on straight, would see of the scene reflected in the
-//! surface's plane. So the mirror is a second view of the same kind, of reflected solids under a reflected light, and
-//! every formula serves both.
+//! What a ray sees in the surface is what the same ray, going on straight, would see of the scene
+//! reflected in the surface's plane. So the mirror is a second view of the same kind, of reflected
+//! solids under a reflected light, and every formula serves both.
 
 use std::cmp::Ordering;
 
@@ -49,7 +49,8 @@ impl<R: Real> Frame<R> {
     }
 }
 
-/// For each face, whether an eye ray enters there (less), runs along it (equal) or leaves (greater).
+/// For each face, whether an eye ray enters there (less), runs along it (equal) or leaves
+/// (greater).
 pub(super) type Crossing = [Ordering; 4];
 
 /// Signs that all pixels of a view share, and that any number can build on once they are decided.
@@ -67,7 +68,8 @@ enum Halfway {
     None,
     /// In any number.
     Good,
-    /// Hardly: the light comes so nearly into the eye that v + l cancels. Arbitrary precision has computed it.
+    /// Hardly: the light comes so nearly into the eye that v + l cancels. Arbitrary precision has
+    /// computed it.
     Poor(Vector<DoubleDouble>),
 }
 
@@ -104,7 +106,8 @@ pub(super) struct FrameBearings<'f> {
 }
 
 impl<'f> FrameBearings<'f> {
-    /// `bearings` tells those of the scene itself (false) or in the mirror (true), where anything `mirrors`.
+    /// `bearings` tells those of the scene itself (false) or in the mirror (true), where anything
+    /// `mirrors`.
     pub(super) fn decide<D>(
         mirrors: bool,
         bearings: impl Fn(bool) -> Result<Bearings<'f>, D>,
@@ -210,7 +213,8 @@ impl<'f, R: Real> View<'f, R> {
             .normal(face)
     }
 
-    /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where it is hit; of solids hit at once, the earliest in the scene's order.
+    /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where
+    /// it is hit; of solids hit at once, the earliest in the scene's order.
     pub(super) fn first_hit(
         &self,
         pixel: (u32, u32),
@@ -290,7 +294,8 @@ impl<'f, R: Real> View<'f, R> {
         Ok(all)
     }
 
-    /// Whether each solid in turn stands between the ray's origin, which is in no solid's interior, and the light.
+    /// Whether each solid in turn stands between the ray's origin, which is in no solid's interior,
+    /// and the light.
     fn each_ahead(&self, ray: &Line<R>) -> impl Iterator<Item = Result<bool, R::Doubt>> {
         let spheres = self.spheres.iter().map(|sphere| sphere.is_ahead(ray));
         spheres.chain(

@@ -26,13 +26,16 @@ use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
 
-/// How long a window that asks to be drawn waits for the picture that is on its way, before it gets the old one.
+/// How long a window that asks to be drawn waits for the picture that is on its way, before it gets
+/// the old one.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// A picture that took no longer is traced over before the next one is there, which takes about as long.
+/// A picture that took no longer is traced over before the next one is there, which takes about as
+/// long.
 const SOON: Duration = Duration::from_millis(20);
 
-/// How soon to look again for a window that nothing can be drawn on and that does not say when that ends.
+/// How soon to look again for a window that nothing can be drawn on and that does not say when that
+/// ends.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// Opens the viewer and stays until it is left.
@@ -114,7 +117,8 @@ struct App<'a> {
     uploaded: bool,
     /// The number of the traced picture that it holds, if it holds one.
     texture: Option<u64>,
-    /// The window is drawn again without waiting for the picture that is on its way: it took too long, or something else changed.
+    /// The window is drawn again without waiting for the picture that is on its way: it took too
+    /// long, or something else changed.
     overdue: bool,
     /// Not before this the playing animation is drawn again.
     next_frame: Instant,
@@ -172,7 +176,8 @@ impl App<'_> {
             .is_behind(self.shown.as_ref().map(|shown| shown.frame))
     }
 
-    /// Asks for the next picture: of the present α, which moves on at `now` if the animation plays and no picture of it is due.
+    /// Asks for the next picture: of the present α, which moves on at `now` if the animation plays
+    /// and no picture of it is due.
     fn advance(&mut self, now: Instant) {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
@@ -181,8 +186,8 @@ impl App<'_> {
         self.tracing.wish(self.wanted());
     }
 
-    /// Lets the next picture be traced over the one that the texture holds, unless that is looked at, or may be wanted again before
-    /// the next one is there.
+    /// Lets the next picture be traced over the one that the texture holds, unless that is looked
+    /// at, or may be wanted again before the next one is there.
     fn give_back(&mut self) {
         let is_soon = |shown: &Traced| shown.time < SOON;
         if self.uploaded
@@ -331,7 +336,8 @@ impl App<'_> {
         !(self.occluded || self.minimized || view.is_empty())
     }
 
-    /// What is only looked at now and then while the animation plays: each time it asks the display.
+    /// What is only looked at now and then while the animation plays: each time it asks the
+    /// display.
     fn look_around(&mut self) {
         if let Some(view) = &self.view {
             self.minimized = view.is_minimized();
@@ -352,8 +358,8 @@ impl App<'_> {
         }
     }
 
-    /// Draws the next frame when the display has shown the last one: one that waits for its own refresh has kept us about as long, one
-    /// that does not is waited for here.
+    /// Draws the next frame when the display has shown the last one: one that waits for its own
+    /// refresh has kept us about as long, one that does not is waited for here.
     fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
         if Instant::now() < self.next_frame {
             event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
@@ -367,7 +373,8 @@ impl App<'_> {
         while let Some(reply) = self.tracing.reply() {
             match reply {
                 Reply::Traced(traced, image) => {
-                    // A stage that was left meanwhile is not shown any more; an angle is, or one that moves fast would never be seen.
+                    // A stage that was left meanwhile is not shown any more; an angle is, or one
+                    // that moves fast would never be seen.
                     let Frame { stage, kernel, .. } = traced.frame;
                     if (stage, kernel) == (self.stage, self.kernel) {
                         self.picture = Some(image);

@@ -54,7 +54,8 @@ impl Board {
             .push(Paint::Text(place, text.into(), color, clip));
     }
 
-    /// The pixels of the rectangle, rows from the top: red, green and blue multiplied by alpha, and alpha.
+    /// The pixels of the rectangle, rows from the top: red, green and blue multiplied by alpha, and
+    /// alpha.
     pub(super) fn rasterise(&self, font: &mut Font) -> Vec<u8> {
         let size = self.rect.size();
         let mut canvas = Canvas {

@@ -4,7 +4,8 @@
 use raw_window_handle::{HasDisplayHandle as _, RawDisplayHandle};
 use winit::window::Window;
 
-/// Where copied text goes. It is there for others as long as this is, and longer where the desktop keeps it.
+/// Where copied text goes. It is there for others as long as this is, and longer where the desktop
+/// keeps it.
 pub(super) struct Clipboard {
     /// Under Wayland only the window that has the keyboard may copy, over its own connection.
     #[cfg(all(unix, not(target_vendor = "apple")))]
@@ -25,7 +26,8 @@ impl Clipboard {
                 .ok()
                 .and_then(|handle| match handle.as_raw() {
                     RawDisplayHandle::Wayland(wayland) => {
-                        // SAFETY: the event loop keeps the display open; window and clipboard go before it.
+                        // SAFETY: the event loop keeps the display open; window and clipboard go
+                        // before it.
                         Some(unsafe { smithay_clipboard::Clipboard::new(wayland.display.as_ptr()) })
                     }
                     _ => None,

@@ -16,7 +16,8 @@ use super::{Options, ViewerError};
 /// The colour of a pixel with a wrong decision: none of the scale's.
 pub(super) const WRONG: [u8; 3] = [0, 255, 0];
 
-/// Wrong pixels are ringed one by one in tiles of so many pixels a side, as long as a tile has few of them.
+/// Wrong pixels are ringed one by one in tiles of so many pixels a side, as long as a tile has few
+/// of them.
 const TILE: usize = 16;
 const FEW: usize = 4;
 
@@ -141,7 +142,8 @@ impl Comparing {
     }
 }
 
-/// How far `frame` is from the truth; `trace` gives the picture of a kernel, and what was decided for each pixel.
+/// How far `frame` is from the truth; `trace` gives the picture of a kernel, and what was decided
+/// for each pixel.
 fn compare(
     frame: Frame,
     mut trace: impl FnMut(Kernel) -> Result<(Image, Vec<Decision>), ViewerError>,

@@ -39,7 +39,8 @@ impl Menu {
         self.selected = Some((from + by).rem_euclid(count) as usize);
     }
 
-    /// The pointer is at `place`, in a window of `surface` pixels; whether that selects another row.
+    /// The pointer is at `place`, in a window of `surface` pixels; whether that selects another
+    /// row.
     pub(super) fn hover(&mut self, place: IVec2, surface: UVec2, cell: UVec2) -> bool {
         let under = self.row_at(place, surface, cell);
         let changed = under.is_some() && under != self.selected;
@@ -66,8 +67,8 @@ impl Menu {
         rows.position(|row| row.intersection(rect).contains(place))
     }
 
-    /// Where the menu and its rows lie in a window of `surface` pixels. A menu that is higher than the
-    /// window is moved so that the selected row is seen.
+    /// Where the menu and its rows lie in a window of `surface` pixels. A menu that is higher than
+    /// the window is moved so that the selected row is seen.
     fn lie(&self, surface: UVec2, cell: UVec2) -> (Rect, Vec<Rect>) {
         let border = (cell.x / 2) as i32;
         let width = (columns() * cell.x) as i32 + 2 * border;

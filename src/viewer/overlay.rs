@@ -28,8 +28,8 @@ impl Overlay {
         }
     }
 
-    /// Draws `boards` in their order over the bound framebuffer, which is `height` pixels high, with
-    /// characters of `cell` pixels.
+    /// Draws `boards` in their order over the bound framebuffer, which is `height` pixels high,
+    /// with characters of `cell` pixels.
     ///
     /// # Errors
     /// [`ScreenError`] where the driver refuses shaders or a texture.

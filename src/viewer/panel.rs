@@ -63,7 +63,8 @@ impl Scroll {
     }
 }
 
-/// The panel in `rect`: `lines` scrolled as `scroll` says, which learns how many there are, above `note`.
+/// The panel in `rect`: `lines` scrolled as `scroll` says, which learns how many there are, above
+/// `note`.
 pub(super) fn panel(
     rect: Rect,
     cell: UVec2,
@@ -102,7 +103,8 @@ pub(super) fn panel(
     board
 }
 
-/// A note over the picture, where there is no panel for it: at the top of `within`, or at its bottom.
+/// A note over the picture, where there is no panel for it: at the top of `within`, or at its
+/// bottom.
 pub(super) fn note(text: &str, within: Rect, cell: UVec2, at_top: bool) -> Board {
     let margin = MARGIN * cell.x;
     let columns = columns(within, cell);

@@ -30,8 +30,9 @@ const LAST_STEP: f64 = 6.28;
 
 /// α, and whether it moves.
 ///
-/// α stays within one turn however long the animation runs: each advance adds a few hundredths of a radian to a number
-/// below 2π and reduces the sum, so a rounding is at most 2⁻⁵¹ and a week of 60 frames a second adds up to less than 2e-8 rad.
+/// α stays within one turn however long the animation runs: each advance adds a few hundredths of a
+/// radian to a number below 2π and reduces the sum, so a rounding is at most 2⁻⁵¹ and a week of 60
+/// frames a second adds up to less than 2e-8 rad.
 #[derive(Debug)]
 pub(super) struct Playback {
     alpha: f64,
@@ -62,7 +63,8 @@ impl Playback {
         self.paused
     }
 
-    /// A redisplay of the playing animation at `now`. The first one after a start or a [`Playback::hold`] shows α as it stands.
+    /// A redisplay of the playing animation at `now`. The first one after a start or a
+    /// [`Playback::hold`] shows α as it stands.
     pub(super) fn advance(&mut self, now: Instant) {
         if self.paused {
             return;
@@ -83,7 +85,8 @@ impl Playback {
         }
     }
 
-    /// Time counts from `start` on, if it counted already: what was before that took no part in the animation.
+    /// Time counts from `start` on, if it counted already: what was before that took no part in the
+    /// animation.
     pub(super) fn count_from(&mut self, start: Instant) {
         if self.last.is_some() {
             self.last = Some(start);
@@ -160,13 +163,14 @@ impl Playback {
 
     fn turn(&mut self, angle: f64) {
         let alpha = (self.alpha + angle % TAU).rem_euclid(TAU);
-        // A sum just below 0 rounds up to 2π itself; an overflow of the speed leaves no angle at all.
+        // A sum just below 0 rounds up to 2π itself; an overflow of the speed leaves no angle at
+        // all.
         self.alpha = if alpha < TAU { alpha } else { 0.0 };
     }
 }
 
-/// The grid angle α_k where `alpha` differs from it by no more than sums of decimal steps round: stepping by 0.3 then
-/// shows the grid itself and gathers no error.
+/// The grid angle α_k where `alpha` differs from it by no more than sums of decimal steps round:
+/// stepping by 0.3 then shows the grid itself and gathers no error.
 fn on_grid(alpha: f64) -> f64 {
     (0..ROUND)
         .map(frame_angle)

@@ -1,4 +1,5 @@
-//! What the pointer does: drags and turns of the wheel. Places are pixels of the window, counted from its bottom left corner.
+//! What the pointer does: drags and turns of the wheel. Places are pixels of the window, counted
+//! from its bottom left corner.
 
 use glam::IVec2;
 use winit::event::MouseScrollDelta;

@@ -21,9 +21,10 @@ pub(super) struct Press<'a> {
 impl Press<'_> {
     /// The action it asks for, if any.
     ///
-    /// What a key means decides where it means a letter, a digit or a key of its own: on-screen keyboards and programs that type
-    /// report such keys at false places. Otherwise its place comes first: the digit row of a French keyboard means `&é"'(-è`, a
-    /// keypad without NumLock means arrows, and the letters of a Cyrillic keyboard are none of ours.
+    /// What a key means decides where it means a letter, a digit or a key of its own: on-screen
+    /// keyboards and programs that type report such keys at false places. Otherwise its place
+    /// comes first: the digit row of a French keyboard means `&é"'(-è`, a keypad without
+    /// NumLock means arrows, and the letters of a Cyrillic keyboard are none of ours.
     pub(super) fn action(&self) -> Option<Action> {
         let others = ModifiersState::ALT | ModifiersState::SUPER;
         if self.modifiers.intersects(others) {

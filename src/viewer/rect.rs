@@ -47,7 +47,8 @@ impl Rect {
         }
     }
 
-    /// The same, moved as little as it takes to lie within `other`; at its corner where it is too large.
+    /// The same, moved as little as it takes to lie within `other`; at its corner where it is too
+    /// large.
     pub(super) fn moved_into(&self, other: Rect) -> Rect {
         let min = self
             .min

@@ -1,6 +1,7 @@
 //! Which display the window goes to, X11 or Wayland, and whether everything it needs is there.
 //!
-//! winit and glutin panic where a library or an X extension is missing, so they are looked for before.
+//! winit and glutin panic where a library or an X extension is missing, so they are looked for
+//! before.
 
 use std::env;
 use std::os::unix::net::UnixStream;
@@ -48,8 +49,8 @@ enum Reached {
     X11(Connection),
 }
 
-/// An event loop on the display that the environment names: Wayland before X11, as winit has it, and the other one where the first
-/// cannot be used.
+/// An event loop on the display that the environment names: Wayland before X11, as winit has it,
+/// and the other one where the first cannot be used.
 ///
 /// # Errors
 /// [`ViewerError::NoDisplay`] where none is named, else what the first one named lacks.
@@ -161,7 +162,8 @@ fn scale_factor() -> Result<(), String> {
     ))
 }
 
-/// Somebody listens where WAYLAND_DISPLAY says. An inherited WAYLAND_SOCKET is a connection already.
+/// Somebody listens where WAYLAND_DISPLAY says. An inherited WAYLAND_SOCKET is a connection
+/// already.
 fn reach_wayland() -> Result<(), String> {
     let Some(display) = env::var_os("WAYLAND_DISPLAY").filter(|display| !display.is_empty()) else {
         return Ok(());

@@ -145,7 +145,8 @@ impl Sheet {
         self.scroll.turn(forward)
     }
 
-    /// Everything that is written in a window of `surface` pixels, with characters of `cell` pixels.
+    /// Everything that is written in a window of `surface` pixels, with characters of `cell`
+    /// pixels.
     pub(super) fn boards(
         &mut self,
         (surface, layout): (UVec2, Layout),
@@ -244,8 +245,8 @@ fn scale() -> [Line; 5] {
     ]
 }
 
-/// The ring around a pixel of the picture that is drawn as `square`, `width` pixels wide and `apart`
-/// from it: four bars.
+/// The ring around a pixel of the picture that is drawn as `square`, `width` pixels wide and
+/// `apart` from it: four bars.
 pub(super) fn ring(square: Rect, apart: i32, width: i32) -> [Rect; 4] {
     let (inner, outer) = (square.grown(apart), square.grown(apart + width));
     let bar = |min: [i32; 2], max: [i32; 2]| Rect {

@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use crate::image::{Format, SaveError};
 use crate::{Image, Stage};
 
-/// Saves `image` under the first free name `firsthit-stageS-NNNN`, and says which. No file that is there is ever touched.
+/// Saves `image` under the first free name `firsthit-stageS-NNNN`, and says which. No file that is
+/// there is ever touched.
 ///
 /// # Errors
 /// [`SaveError`] where the current folder takes no file, or not this one.
@@ -20,7 +21,8 @@ pub(super) fn save(image: &Image, stage: Stage, format: Format) -> Result<PathBu
     Ok(path)
 }
 
-/// Makes an empty file of the first free name: from here on the name is taken, also for another viewer in the same folder.
+/// Makes an empty file of the first free name: from here on the name is taken, also for another
+/// viewer in the same folder.
 fn reserve(stage: Stage, format: Format) -> Result<PathBuf, SaveError> {
     let mut number = 1_u64;
     loop {

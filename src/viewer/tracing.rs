@@ -63,7 +63,8 @@ pub(super) struct Studio {
     tracer: Tracer,
     threads: usize,
     size: u32,
-    /// Every picture that was ever handed out, the one that was traced last at the end. One that nobody holds any more is traced over.
+    /// Every picture that was ever handed out, the one that was traced last at the end. One that
+    /// nobody holds any more is traced over.
     pictures: Vec<Arc<Image>>,
     /// What the last one is of, if it is still that.
     last: Option<Traced>,

@@ -66,8 +66,8 @@ struct Drawing {
 }
 
 impl View {
-    /// Opens a window for pictures of `picture` × `picture` pixels: so many logical pixels a side where
-    /// they fit the monitor, else the largest square that does.
+    /// Opens a window for pictures of `picture` × `picture` pixels: so many logical pixels a side
+    /// where they fit the monitor, else the largest square that does.
     pub(super) fn open(event_loop: &ActiveEventLoop, picture: u32) -> Result<View, ViewerError> {
         let monitor = event_loop
             .primary_monitor()
@@ -101,7 +101,8 @@ impl View {
             Some(config) => event_loop.create_window(fitting(attributes.clone(), config)),
             None => event_loop.create_window(attributes.clone()),
         };
-        // Windows has no display without a window; elsewhere the display says what kind of window it can draw in.
+        // Windows has no display without a window; elsewhere the display says what kind of window
+        // it can draw in.
         let early = cfg!(windows).then(|| create(None)).transpose()?;
         let handle = early
             .as_ref()
@@ -129,7 +130,8 @@ impl View {
         Ok(view)
     }
 
-    /// Makes surface, context and screen, anew where they were lost. The screen's texture is empty after it.
+    /// Makes surface, context and screen, anew where they were lost. The screen's texture is empty
+    /// after it.
     fn renew(&mut self) -> Result<(), Failure> {
         self.drawing = None;
         self.examined = false;
@@ -175,7 +177,8 @@ impl View {
         }
     }
 
-    /// Opens or closes the panel. The window grows by what the panel needs, where it may, and shrinks again.
+    /// Opens or closes the panel. The window grows by what the panel needs, where it may, and
+    /// shrinks again.
     pub(super) fn show_panel(&mut self, open: bool) {
         if self.panel == open {
             return;
@@ -202,7 +205,8 @@ impl View {
         self.growth.awaited(now)
     }
 
-    /// Changes what the layout depends on: what was in the middle of the picture's part stays there.
+    /// Changes what the layout depends on: what was in the middle of the picture's part stays
+    /// there.
     fn change(&mut self, change: impl FnOnce(&mut View)) {
         let before = self.layout().picture.size();
         change(self);
@@ -238,7 +242,8 @@ impl View {
         placement
     }
 
-    /// Zooms around `pointer`, a pixel of the window, by so many steps; outward where they are negative.
+    /// Zooms around `pointer`, a pixel of the window, by so many steps; outward where they are
+    /// negative.
     pub(super) fn zoom(&mut self, steps: i32, pointer: IVec2) {
         let part = self.layout().picture;
         let pointer = pointer - self.corner(part);
@@ -256,7 +261,8 @@ impl View {
         self.zoom.fit();
     }
 
-    /// The pixel of the window at a place that winit names: both count from 0, but ours from the bottom.
+    /// The pixel of the window at a place that winit names: both count from 0, but ours from the
+    /// bottom.
     pub(super) fn window_pixel(&self, place: PhysicalPosition<f64>) -> IVec2 {
         let (x, y) = (place.x.floor() as i32, place.y.floor() as i32);
         IVec2::new(x, self.surface.y as i32 - 1 - y)
@@ -285,7 +291,8 @@ impl View {
         self.window.set_fullscreen(wanted);
     }
 
-    /// Replaces rows of the picture, counted from the bottom, by those of `image`. What it took; where `waits`, until it is done.
+    /// Replaces rows of the picture, counted from the bottom, by those of `image`. What it took;
+    /// where `waits`, until it is done.
     pub(super) fn upload(
         &mut self,
         image: &Image,
@@ -303,7 +310,8 @@ impl View {
         Ok(start.elapsed())
     }
 
-    /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be: once in each size of the window.
+    /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be:
+    /// once in each size of the window.
     pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
         let drawing = self.drawing.as_ref()?;
@@ -319,9 +327,9 @@ impl View {
         drawing.screen.first_difference(surface, placement, image)
     }
 
-    /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the way
-    /// to the display; where `waits`, until it is done. `None` says that the surface was lost and
-    /// everything on it made anew, so that a picture must be uploaded again.
+    /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the
+    /// way to the display; where `waits`, until it is done. `None` says that the surface was
+    /// lost and everything on it made anew, so that a picture must be uploaded again.
     pub(super) fn draw(
         &mut self,
         (marks, boards): (&[Mark], Vec<Board>),
@@ -441,8 +449,9 @@ impl Drawing {
         // SAFETY: as above.
         let surface = unsafe { display.create_window_surface(config, &attributes) }?;
         let context = context.make_current(&surface)?;
-        // On Wayland a swap that waits would wait for ever while the window is hidden; there the compositor asks for each frame. Where a
-        // driver knows no interval, the clock alone paces the animation.
+        // On Wayland a swap that waits would wait for ever while the window is hidden; there the
+        // compositor asks for each frame. Where a driver knows no interval, the clock alone
+        // paces the animation.
         let interval = match window.display_handle()?.as_raw() {
             RawDisplayHandle::Wayland(_) => SwapInterval::DontWait,
             _ => SwapInterval::Wait(NonZeroU32::MIN),
@@ -452,7 +461,8 @@ impl Drawing {
         // SAFETY: the context is current; every context has these two names.
         let renderer = unsafe { gl.get_parameter_string(glow::RENDERER) };
         let gl = Rc::new(gl);
-        // SAFETY: the context is current, and stays so; where it is lost, the drop of what holds both makes it current before the screen's.
+        // SAFETY: the context is current, and stays so; where it is lost, the drop of what holds
+        // both makes it current before the screen's.
         let screen = unsafe { Screen::new(gl.clone(), picture) }.map_err(ViewerError::from)?;
         Ok(Drawing {
             overlay: None,

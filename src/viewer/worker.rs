@@ -56,7 +56,8 @@ impl<Task> Inbox<Task> {
 }
 
 impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
-    /// Starts it. `work` does a task and may answer as often as it likes; after each answer `wake` is called, on the worker's thread.
+    /// Starts it. `work` does a task and may answer as often as it likes; after each answer `wake`
+    /// is called, on the worker's thread.
     ///
     /// # Errors
     /// Where the system has no thread left.
@@ -101,7 +102,8 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
         self.inbox.changed.notify_one();
     }
 
-    /// Sends the worker on an errand: it is done before any wish, after the errands before it, and also when the window closes.
+    /// Sends the worker on an errand: it is done before any wish, after the errands before it, and
+    /// also when the window closes.
     pub(super) fn send(&self, errand: Task) {
         let mut tasks = self.inbox.lock();
         tasks.errands.push_back(errand);

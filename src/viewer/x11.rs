@@ -1,4 +1,5 @@
-//! A connection of our own to the X server: to ask what winit takes for granted, and to notice its death.
+//! A connection of our own to the X server: to ask what winit takes for granted, and to notice its
+//! death.
 
 use std::ffi::{CStr, c_char, c_int, c_long, c_void};
 use std::io::{self, Write as _};
@@ -58,19 +59,21 @@ pub(super) struct Connection {
     display: NonNull<c_void>,
 }
 
-// SAFETY: Xlib ties a display to no thread once XInitThreads was called, and only the owner of this one uses it.
+// SAFETY: Xlib ties a display to no thread once XInitThreads was called, and only the owner of this
+// one uses it.
 unsafe impl Send for Connection {}
 
 impl Connection {
-    /// To a server that answers and has every extension in [`EXTENSIONS`]. It should stay open until winit has its own: the departure
-    /// of its last client makes an X server start anew. From here on the death of a server is one line.
+    /// To a server that answers and has every extension in [`EXTENSIONS`]. It should stay open
+    /// until winit has its own: the departure of its last client makes an X server start anew.
+    /// From here on the death of a server is one line.
     ///
     /// # Errors
     /// What is missing.
     pub(super) fn open() -> Result<Connection, String> {
         let xlib = Xlib::load().ok_or("libX11.so.6 is not Xlib")?;
-        // SAFETY: XInitThreads comes first; the handler has the signature that Xlib wants and lives as long as the process; no name
-        // means DISPLAY.
+        // SAFETY: XInitThreads comes first; the handler has the signature that Xlib wants and lives
+        // as long as the process; no name means DISPLAY.
         let display = unsafe {
             (xlib.init_threads)();
             (xlib.set_io_error_handler)(Some(server_died));
@@ -105,8 +108,8 @@ impl Connection {
 
     /// Watches over the server from a thread of its own until the process ends.
     ///
-    /// The event loop alone would notice its death too late or not at all: winit panics where it meets it first, and Mesa's EGL
-    /// then draws in software for ever.
+    /// The event loop alone would notice its death too late or not at all: winit panics where it
+    /// meets it first, and Mesa's EGL then draws in software for ever.
     pub(super) fn watch(self) {
         // Where the system has no thread left, the event loop is as good as it gets.
         let _ = thread::Builder::new()
@@ -136,8 +139,9 @@ unsafe extern "C" {
     safe fn _exit(status: c_int) -> !;
 }
 
-/// Called by Xlib, on whatever thread, when a connection to the server broke. Xlib lets it neither return nor unwind: it would end the
-/// process itself, after lines of its own. What OpenGL has registered for the end must not run while another thread is drawing.
+/// Called by Xlib, on whatever thread, when a connection to the server broke. Xlib lets it neither
+/// return nor unwind: it would end the process itself, after lines of its own. What OpenGL has
+/// registered for the end must not run while another thread is drawing.
 extern "C" fn server_died(_display: *mut c_void) -> c_int {
     static DYING: Once = Once::new();
     DYING.call_once(|| {

@@ -25,8 +25,8 @@ impl Zoom {
         self.chosen = None;
     }
 
-    /// Zooms by `steps`, outward where they are negative. The pixel of the picture at `pointer` stays there, as long as the middle of
-    /// the window shows the picture.
+    /// Zooms by `steps`, outward where they are negative. The pixel of the picture at `pointer`
+    /// stays there, as long as the middle of the window shows the picture.
     pub(super) fn by(&mut self, steps: i32, pointer: IVec2, surface: UVec2, size: u32) {
         let least = Placement::fit(surface, size);
         if least.extent == 0 {
@@ -101,7 +101,8 @@ mod tests {
             let pointer = IVec2::new(300, 222);
             let pixel = |zoom: &Zoom| zoom.placement(SURFACE, size).pixel_at(pointer, size);
             for _ in 0..30 {
-                // A pixel of the window may show several of a picture that is larger; from 1:1 on it shows one.
+                // A pixel of the window may show several of a picture that is larger; from 1:1 on
+                // it shows one.
                 let single = zoom.placement(SURFACE, size).extent >= size;
                 let before = pixel(&zoom);
                 zoom.by(1, pointer, SURFACE, size);

@@ -5,11 +5,13 @@ use std::path::Path;
 
 use firsthit::{Image, scene};
 
-/// What `act` is called with: the words of a command line without the program's name, to be carried out in a folder.
+/// What `act` is called with: the words of a command line without the program's name, to be carried
+/// out in a folder.
 pub(crate) type Act<'a> = &'a dyn Fn(&[&str], &Path);
 
-/// Calls `act`, which panics on a finding, with words that do no harm: they write only into the folder, open no window and take no time. Others
-/// are followed by `--help`, with which nothing is done but they are read all the same.
+/// Calls `act`, which panics on a finding, with words that do no harm: they write only into the
+/// folder, open no window and take no time. Others are followed by `--help`, with which nothing is
+/// done but they are read all the same.
 pub(crate) fn run(bytes: &[u8], act: Act<'_>) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;

@@ -4,13 +4,14 @@ use std::fs;
 
 use firsthit::Image;
 
-/// Whether a picture of this size takes more memory than is allowed here. What is not square is refused before it takes any.
+/// Whether a picture of this size takes more memory than is allowed here. What is not square is
+/// refused before it takes any.
 pub(crate) fn is_large(width: i64, height: i64) -> bool {
     width == height && width > 512
 }
 
-/// A file of these bytes, whose name ends in that, is a picture that can be written as EXR and read again with every bit, or is refused in
-/// one line.
+/// A file of these bytes, whose name ends in that, is a picture that can be written as EXR and read
+/// again with every bit, or is refused in one line.
 pub(crate) fn check(bytes: &[u8], extension: &str) {
     let file = |extension| tempfile::Builder::new().suffix(extension).tempfile();
     let path = file(extension).unwrap().into_temp_path();

@@ -1,7 +1,7 @@
 //! Bytes → a scene, a stage, α and N → `exact` equals `reference`, bit for bit.
 //!
-//! Bytes that begin with `#` are a scene file, whose first line may give the stage, α and N, as in `#6 0.3 16`. All others choose a scene
-//! that is aimed at what is hard.
+//! Bytes that begin with `#` are a scene file, whose first line may give the stage, α and N, as in
+//! `#6 0.3 16`. All others choose a scene that is aimed at what is hard.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::{Debug, Write};
@@ -12,7 +12,8 @@ use firsthit::tracer::Simd;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use glam::DVec3;
 
-/// The most solids of a scene that is traced: the time grows with them, and few are as hard as many.
+/// The most solids of a scene that is traced: the time grows with them, and few are as hard as
+/// many.
 const SOLIDS: usize = 6;
 
 /// Panics where the promise is broken.
@@ -214,7 +215,8 @@ fn step(x: f64, ulps: i32) -> f64 {
 /// Magnitudes that a scene file just admits, and such whose squares and products are far away.
 const EXTREMES: [f64; 8] = [1e-30, 1e6, 1e-15, 1e-8, 1e-16, 999_999.999, 1e-29, 1e3];
 
-/// The scene as it grows: what is chosen later takes up the numbers and points from before, so that there are ties.
+/// The scene as it grows: what is chosen later takes up the numbers and points from before, so that
+/// there are ties.
 struct Builder<'a> {
     choices: Choices<'a>,
     size: u32,

@@ -33,7 +33,8 @@ static LIBRARY: LazyLock<Option<Library>> = LazyLock::new(|| {
     }
 });
 
-/// The variables of the environment that bring a fault; `None` where there is no compiler for it: never so in CI.
+/// The variables of the environment that bring a fault; `None` where there is no compiler for it:
+/// never so in CI.
 pub(crate) fn environment(fault: &str) -> Option<[(&'static str, &str); 2]> {
     let library = LIBRARY.as_ref()?.path.to_str()?;
     Some([("LD_PRELOAD", library), ("FAULT", fault)])

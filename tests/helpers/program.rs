@@ -17,7 +17,8 @@ pub(crate) fn skipped(error: &dyn Display) {
     writeln!(std::io::stderr(), "skipped: {error}").unwrap();
 }
 
-/// An offscreen for pictures of this size, or `None` where its library is not installed: never so in CI.
+/// An offscreen for pictures of this size, or `None` where its library is not installed: never so
+/// in CI.
 pub(crate) fn open(through: Through, size: u32) -> Option<Offscreen> {
     match Offscreen::open(through, size) {
         Ok(offscreen) => Some(offscreen),
@@ -74,8 +75,8 @@ pub(crate) fn succeeded(output: &Output, what: &str) -> String {
     text(&output.stdout)
 }
 
-/// What the program said on standard error; it must have failed with this status, and in one line where that is not 2, which is for
-/// wrong usage.
+/// What the program said on standard error; it must have failed with this status, and in one line
+/// where that is not 2, which is for wrong usage.
 pub(crate) fn failed(output: &Output, status: i32, what: &str) -> String {
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(status), "{what}: {message}");

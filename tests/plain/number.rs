@@ -1,9 +1,11 @@
 //! Numbers of a chosen number of bits that know when they are zero.
 //!
-//! Each carries a bound on the errors of all roundings before it, as a power of two: a few times 2^(`error` − bits). What is not
-//! rounded has none, so that rational numbers that fit are exact. A number below 2^(`error` − bits/2) counts as exactly 0.
-//! A number that is not 0 would have to lose half of its bits by accident to be taken for one, and half of twice as many in
-//! an evaluation of twice the bits: one that agrees in both is 0, or smaller beyond what short scenes can bring about.
+//! Each carries a bound on the errors of all roundings before it, as a power of two: a few times
+//! 2^(`error` − bits). What is not rounded has none, so that rational numbers that fit are exact. A
+//! number below 2^(`error` − bits/2) counts as exactly 0. A number that is not 0 would have to lose
+//! half of its bits by accident to be taken for one, and half of twice as many in an evaluation of
+//! twice the bits: one that agrees in both is 0, or smaller beyond what short scenes can bring
+//! about.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -125,13 +127,15 @@ impl Number {
         (self - other).sign().is_lt()
     }
 
-    /// The nearest f32, ties to even. Half of the bits decide what is a tie, as they decide what is zero.
+    /// The nearest f32, ties to even. Half of the bits decide what is a tie, as they decide what is
+    /// zero.
     pub(crate) fn to_sample(&self) -> f32 {
         if self.sign().is_eq() {
             return 0.0;
         }
         let value = self.value.clone().with_precision(self.bits / 2).value();
-        // The library takes what is below the smallest f32 for 0, but above its half that is the nearest.
+        // The library takes what is below the smallest f32 for 0, but above its half that is the
+        // nearest.
         let [smallest, its_half] = [-149, -150].map(|e| Float::from_parts(1.into(), e));
         if value > its_half && value < smallest {
             return f32::from_bits(1);

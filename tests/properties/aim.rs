@@ -133,7 +133,8 @@ impl Aim {
         (index(self.place.0), index(self.place.1))
     }
 
-    /// Changes the scene so that it happens, as nearly as f64 computes it, in the picture of that α and N.
+    /// Changes the scene so that it happens, as nearly as f64 computes it, in the picture of that α
+    /// and N.
     pub(crate) fn apply(&self, model: &mut Model, alpha: f64, size: u32) {
         self.try_apply(model, alpha, size);
     }

@@ -13,14 +13,16 @@ pub(crate) struct Errors {
     pub(crate) ulp: u32,
 }
 
-/// A frame, and what is allowed there. The kernels exact and reference are allowed nothing, in every row.
+/// A frame, and what is allowed there. The kernels exact and reference are allowed nothing, in
+/// every row.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     /// The file's name in `tests/scenes`.
     pub(crate) scene: &'static str,
     pub(crate) stage: u8,
     pub(crate) alpha: f64,
-    /// The bits of the plain evaluation: more than twice those between the largest and the smallest term of a decision.
+    /// The bits of the plain evaluation: more than twice those between the largest and the
+    /// smallest term of a decision.
     pub(crate) bits: usize,
     pub(crate) fast: Errors,
     pub(crate) double: Errors,
@@ -82,8 +84,8 @@ const fn row(
     }
 }
 
-/// Scene, stage, α, bits; then for fast and for double the wrong pixels, the misrounded samples, the largest error in ulp. Where
-/// a row fails, the test prints it as it should be.
+/// Scene, stage, α, bits; then for fast and for double the wrong pixels, the misrounded samples,
+/// the largest error in ulp. Where a row fails, the test prints it as it should be.
 #[rustfmt::skip]
 pub(crate) const TABLE: &[Row] = &[
     row("far_spheres", 2, 0.0, 256, [0, 0, 0], [0, 0, 0]),

@@ -1,4 +1,5 @@
-//! What is written beside the picture and over it: keys, information, a clicked pixel, the menu, messages, and the error view.
+//! What is written beside the picture and over it: keys, information, a clicked pixel, the menu,
+//! messages, and the error view.
 
 use std::fs;
 
@@ -97,7 +98,8 @@ fn a_dense_display_gets_twice_the_pixels_and_a_menu_twice_as_large() {
 
 #[test]
 fn every_scale_factor_has_its_window_and_its_panel() {
-    // N logical pixels a side; the picture in whole multiples, and what they leave is for the panel.
+    // N logical pixels a side; the picture in whole multiples, and what they leave is for the
+    // panel.
     for (scale, side, extent, character) in [
         ("1", 300, 300, 7),
         ("1.5", 450, 300, 11),

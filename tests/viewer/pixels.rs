@@ -23,7 +23,8 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// How many pixels of some rows, counted from the top, are not those of `other`; all of them where the sizes differ.
+    /// How many pixels of some rows, counted from the top, are not those of `other`; all of them
+    /// where the sizes differ.
     pub fn differences(&self, other: &Pixels, rows: Range<usize>) -> usize {
         let range = rows.start * self.width..rows.end * self.width;
         if (self.width, self.height) != (other.width, other.height) {
@@ -33,8 +34,8 @@ impl Pixels {
         pairs.filter(|(a, b)| a != b).count()
     }
 
-    /// The rectangle of `width` × `height` pixels whose top left one is at `left` and `top`; as much of
-    /// it as there is.
+    /// The rectangle of `width` × `height` pixels whose top left one is at `left` and `top`; as
+    /// much of it as there is.
     pub fn part(&self, [left, top]: [usize; 2], [width, height]: [usize; 2]) -> Pixels {
         let width = width.min(self.width.saturating_sub(left));
         let rows = self.bytes.chunks(self.width).skip(top).take(height);
@@ -129,7 +130,8 @@ pub fn letterboxed(picture: &Image, width: usize, height: usize) -> Pixels {
     placed(picture, width, height, corner, extent)
 }
 
-/// `picture` in a window as a square of `extent` pixels with its bottom left corner at `left` and `bottom`, and blue around it.
+/// `picture` in a window as a square of `extent` pixels with its bottom left corner at `left` and
+/// `bottom`, and blue around it.
 pub fn placed(
     picture: &Image,
     width: usize,

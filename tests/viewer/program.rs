@@ -85,7 +85,8 @@ impl Program {
         })
     }
 
-    /// What its main thread has done so far: the times that it was put to sleep or to wait, and its ticks of processor time.
+    /// What its main thread has done so far: the times that it was put to sleep or to wait, and its
+    /// ticks of processor time.
     fn activity(&self) -> Vec<String> {
         let read = |file: &str| {
             let path = format!("/proc/{0}/task/{0}/{file}", self.process.id());

@@ -56,8 +56,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts the program with `arguments` under an Xvfb, waits for its first frame and gives it the keyboard. `None` where there is
-    /// no Xvfb.
+    /// Starts the program with `arguments` under an Xvfb, waits for its first frame and gives it
+    /// the keyboard. `None` where there is no Xvfb.
     pub fn start(arguments: &[&str]) -> Option<Session> {
         Some(Session::on(Xvfb::start(&[])?, arguments, &[]))
     }
@@ -256,7 +256,8 @@ impl Session {
         })
     }
 
-    /// Moves the pointer to the pixel of the window at `x` and `y`, counted from its top left corner.
+    /// Moves the pointer to the pixel of the window at `x` and `y`, counted from its top left
+    /// corner.
     pub fn point(&self, x: i16, y: i16) {
         let place = self
             .connection
@@ -277,7 +278,8 @@ impl Session {
             .unwrap();
     }
 
-    /// Presses a button of the mouse, or lets go of it. 4 is the wheel turned away from the person, 5 toward the person.
+    /// Presses a button of the mouse, or lets go of it. 4 is the wheel turned away from the person,
+    /// 5 toward the person.
     pub fn button(&self, button: u8, down: bool) {
         let event = if down {
             BUTTON_PRESS_EVENT
@@ -308,7 +310,8 @@ impl Session {
         (geometry.width.into(), geometry.height.into())
     }
 
-    /// Takes the window from the screen as a window manager does that makes an icon of it, or puts it back.
+    /// Takes the window from the screen as a window manager does that makes an icon of it, or puts
+    /// it back.
     pub fn iconify(&self, iconic: bool) {
         let hidden = self.atom("_NET_WM_STATE_HIDDEN");
         let state: &[u32] = if iconic { &[hidden] } else { &[] };
@@ -359,14 +362,16 @@ impl Session {
         })
     }
 
-    /// Waits until the window shows the picture of N = `size`, `stage` and `alpha`, as it was traced, byte for byte.
+    /// Waits until the window shows the picture of N = `size`, `stage` and `alpha`, as it was
+    /// traced, byte for byte.
     #[track_caller]
     pub fn shows(&self, size: u32, stage: Stage, alpha: f64) {
         let picture = traced(size, stage, alpha);
         self.shows_pixels(|width, height| letterboxed(&picture, width, height));
     }
 
-    /// The same, with the picture as a square of `extent` pixels whose bottom left corner lies at `corner`.
+    /// The same, with the picture as a square of `extent` pixels whose bottom left corner lies at
+    /// `corner`.
     #[track_caller]
     pub fn shows_placed(&self, picture: &Image, corner: [i64; 2], extent: usize) {
         self.shows_pixels(|width, height| placed(picture, width, height, corner, extent));
@@ -378,8 +383,8 @@ impl Session {
         wait_to_show(|| self.pixels(), expected);
     }
 
-    /// Waits until something lies over at least so many hundredths of the window, which shows the picture of N = `size`, `stage` and
-    /// `alpha`, and keeps it to be looked at.
+    /// Waits until something lies over at least so many hundredths of the window, which shows the
+    /// picture of N = `size`, `stage` and `alpha`, and keeps it to be looked at.
     #[track_caller]
     pub fn covers(&self, size: u32, stage: Stage, alpha: f64, percent: usize, name: &str) {
         let picture = traced(size, stage, alpha);
@@ -392,10 +397,10 @@ impl Session {
         self.screenshot(name);
     }
 
-    /// Waits until a panel with text stands to the right of the picture's part of the window, `width`
-    /// pixels wide, which shows all of the picture of N = `size`, `stage` and `alpha`, and keeps it to be
-    /// looked at. Only the ring around an inspected pixel, `ringed` from the left and the top, may lie
-    /// over the picture.
+    /// Waits until a panel with text stands to the right of the picture's part of the window,
+    /// `width` pixels wide, which shows all of the picture of N = `size`, `stage` and `alpha`,
+    /// and keeps it to be looked at. Only the ring around an inspected pixel, `ringed` from the
+    /// left and the top, may lie over the picture.
     #[track_caller]
     pub fn shows_beside_panel(
         &self,
@@ -434,7 +439,8 @@ impl Session {
         });
     }
 
-    /// The picture in the window as a PNG in the tests' folder for temporary files, to be looked at.
+    /// The picture in the window as a PNG in the tests' folder for temporary files, to be looked
+    /// at.
     pub fn screenshot(&self, name: &str) -> PathBuf {
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         self.pixels().unwrap().save(&path);

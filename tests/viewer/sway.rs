@@ -144,7 +144,8 @@ impl Sway {
         Some(String::from_utf8(text).unwrap())
     }
 
-    /// Waits until the display shows nothing but the picture of N = 500, `stage` and α = 0 as it was traced, byte for byte.
+    /// Waits until the display shows nothing but the picture of N = 500, `stage` and α = 0 as it
+    /// was traced, byte for byte.
     #[track_caller]
     pub fn shows(&self, stage: Stage) {
         let picture = traced(500, stage, 0.0);

@@ -202,7 +202,8 @@ fn the_wheel_zooms_around_the_pointer_and_dragging_moves() {
     session.resize(400, 300);
     session.shows(40, Stage::Reflection, 0.0);
     let picture = traced(40, Stage::Reflection, 0.0);
-    // Seven times, and so 60 and 10 pixels from the window's corner; the pixel of the picture under the pointer stays.
+    // Seven times, and so 60 and 10 pixels from the window's corner; the pixel of the picture under
+    // the pointer stays.
     let pointer = [151, 300 - 1 - 82];
     session.point(151, 82);
     // winit counts a faked wheel's way back as well: two notches, 8 times and 10 times.

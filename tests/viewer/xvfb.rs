@@ -7,7 +7,8 @@ use std::thread;
 
 use super::DEADLINE;
 
-/// A running Xvfb. It ends with SIGTERM when dropped, also by a panic, and then removes its socket and its lock.
+/// A running Xvfb. It ends with SIGTERM when dropped, also by a panic, and then removes its socket
+/// and its lock.
 pub struct Xvfb {
     process: Child,
     /// As DISPLAY names it.
@@ -15,8 +16,8 @@ pub struct Xvfb {
 }
 
 impl Xvfb {
-    /// Starts one with a screen of 1280 × 1024 pixels and further `arguments`. `None`, and a line on standard error, where there is no
-    /// Xvfb; where CI is set there must be one.
+    /// Starts one with a screen of 1280 × 1024 pixels and further `arguments`. `None`, and a line
+    /// on standard error, where there is no Xvfb; where CI is set there must be one.
     pub fn start(arguments: &[&str]) -> Option<Xvfb> {
         let spawned = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1280x1024x24"])

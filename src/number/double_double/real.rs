@@ -83,7 +83,8 @@ impl Real for DoubleDouble {
             }
             square = square * square;
             if square.magnitude() < NO_UNDERFLOW {
-                // The power is a multiple of this square, and no factor is above 1 by more than rounding.
+                // The power is a multiple of this square, and no factor is above 1 by more than
+                // rounding.
                 return DoubleDouble {
                     high: 0.0,
                     low: 0.0,
@@ -98,7 +99,8 @@ impl Real for DoubleDouble {
     }
 
     fn sign(self) -> Result<Ordering, Doubt> {
-        // |low| ≤ u|high|, so the truth has the sign of `high` where |high|(1 − u) exceeds the error.
+        // |low| ≤ u|high|, so the truth has the sign of `high` where |high|(1 − u) exceeds the
+        // error.
         if self.high.abs() > self.error * ROUND_UP {
             Ok(if self.high > 0.0 {
                 Ordering::Greater
@@ -113,7 +115,8 @@ impl Real for DoubleDouble {
     }
 
     fn to_sample(self) -> Result<f32, Doubt> {
-        // The f64 nearest to high + low ± error, rounded away from the middle by more than its own rounding.
+        // The f64 nearest to high + low ± error, rounded away from the middle by more than its own
+        // rounding.
         let ends = [-self.error, self.error].map(|error| {
             let end = self + DoubleDouble::exact(error);
             let slack = SUM * 2.0 * end.high.abs();

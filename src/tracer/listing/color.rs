@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::unit::get_unit;
 use crate::scene::Scene;
 
-/// Code 4-1. `scene` holds the document's `Light I`: its ka, kd, ks are the material's, its Ia and Ib the light's.
+/// Code 4-1. `scene` holds the document's `Light I`: its ka, kd, ks are the material's, its Ia and
+/// Ib the light's.
 pub(super) fn get_pixel_color(
     ligdir: DVec3,
     viewdir: DVec3,
@@ -18,8 +19,8 @@ pub(super) fn get_pixel_color(
     let mul_nh = normal.dot(h);
     let max_nl = if mul_nl > 0.0 { mul_nl } else { 0.0 };
     let max_nh = if mul_nh > 0.0 { mul_nh } else { 0.0 };
-    // Slip (Code 4-1): Equation 4-1 asks for the power of the true n·h. A dot product has a relative error of some 1e-16,
-    // and its 1000th power 1000 times that.
+    // Slip (Code 4-1): Equation 4-1 asks for the power of the true n·h. A dot product has a
+    // relative error of some 1e-16, and its 1000th power 1000 times that.
     let highlight = libm::pow(max_nh, f64::from(material.exponent));
     material.ambient * i.ambient_intensity
         + material.diffuse * i.intensity * max_nl
@@ -33,7 +34,8 @@ mod tests {
     use super::*;
     use crate::camera::sin_cos;
 
-    /// Where n = h the equation's power is 1, and the listing's is off by nothing or by some 1000 times what n·h is off by.
+    /// Where n = h the equation's power is 1, and the listing's is off by nothing or by some 1000
+    /// times what n·h is off by.
     #[test]
     #[expect(clippy::unwrap_used, reason = "a test stops at the first surprise")]
     fn a_power_multiplies_the_error_of_its_base() {

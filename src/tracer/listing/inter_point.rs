@@ -37,8 +37,9 @@ pub(super) fn get_inter_point_sphere(pixel: DVec3, dir: DVec3, s: &Sphere) -> Op
         temp2 = -dir.dot(pixel - s.center); // -d(e-c)
         let t1 = (temp2 + temp1) / dir.dot(dir);
         let t2 = (temp2 - temp1) / dir.dot(dir); // equation 3-1
-        // Slip (Code 3-1): the first hit is the first point along the ray. Here it is the point that is nearer to the
-        // pixel, on whichever side of it; a sphere behind the origin of a mirrored or shadow ray (t < 0) is met too.
+        // Slip (Code 3-1): the first hit is the first point along the ray. Here it is the point
+        // that is nearer to the pixel, on whichever side of it; a sphere behind the origin
+        // of a mirrored or shadow ray (t < 0) is met too.
         let t = if t1.abs() > t2.abs() { t2 } else { t1 };
         Some(pixel + t * dir) // e+td
     }
@@ -52,16 +53,16 @@ fn get_inter_point_triangle(
     int_triangle: &mut bool,
 ) -> DVec3 {
     let mut result = DVec3::ZERO;
-    // Slip (Code 3-2): a line that runs along the face is divided by 0. The point becomes a NaN, of which no comparison
-    // holds, so the face is missed. And nothing asks for t > 0 here
+    // Slip (Code 3-2): a line that runs along the face is divided by 0. The point becomes a NaN, of
+    // which no comparison holds, so the face is missed. And nothing asks for t > 0 here
     // either.
     let t1 = (t.ver1 - pixel).dot(t.normal) / dir.dot(t.normal); // equation 3-2
     let ab = t.ver2 - t.ver1;
     let bc = t.ver3 - t.ver2;
     let ca = t.ver1 - t.ver3;
     let temp = pixel + t1 * dir; // p+td
-    // Slip (Code 3-2): a face owns its edges, but these tests, like Equation 3-3, are strict. A line through the edge
-    // between two faces hits neither of them.
+    // Slip (Code 3-2): a face owns its edges, but these tests, like Equation 3-3, are strict. A
+    // line through the edge between two faces hits neither of them.
     if ab.cross(temp - t.ver1).dot(t.normal) > 0.0
         && bc.cross(temp - t.ver2).dot(t.normal) > 0.0
         && ca.cross(temp - t.ver3).dot(t.normal) > 0.0
@@ -73,8 +74,8 @@ fn get_inter_point_triangle(
     result
 }
 
-/// Code 3-2. The point and the number of its face, from 0, where the document counts `IntTriangle_No` from 1; `None` is its
-/// `IntTetrahedron=false`.
+/// Code 3-2. The point and the number of its face, from 0, where the document counts
+/// `IntTriangle_No` from 1; `None` is its `IntTetrahedron=false`.
 pub(super) fn get_inter_point_tetrahedron(
     pixel: DVec3,
     dir: DVec3,
@@ -82,12 +83,14 @@ pub(super) fn get_inter_point_tetrahedron(
 ) -> Option<(DVec3, usize)> {
     let mut result = DVec3::ZERO;
     let mut int_triangle_no = None;
-    // Slip (Code 3-2): only the first triangle sets the distance that the others must fall below, so where it is missed
-    // they are compared with whatever stood there before. That is 0 here, and nothing is nearer: only lines through the
-    // first triangle, from either side, meet the tetrahedron at all.
+    // Slip (Code 3-2): only the first triangle sets the distance that the others must fall below,
+    // so where it is missed they are compared with whatever stood there before. That is 0 here,
+    // and nothing is nearer: only lines through the first triangle, from either side, meet the
+    // tetrahedron at all.
     let mut distance = 0.0;
-    // Slip (Code 3-2): no line makes the flag false again for the next triangle. Once one is hit, each one after it counts
-    // as hit too, and where it is missed, at the point that GetInterPoint_Triangle's result starts with: the origin.
+    // Slip (Code 3-2): no line makes the flag false again for the next triangle. Once one is hit,
+    // each one after it counts as hit too, and where it is missed, at the point that
+    // GetInterPoint_Triangle's result starts with: the origin.
     let mut int_triangle = false;
     for (no, triangle) in t.iter().enumerate() {
         let result_temp = get_inter_point_triangle(pixel, dir, triangle, &mut int_triangle);
@@ -103,7 +106,8 @@ pub(super) fn get_inter_point_tetrahedron(
     int_triangle_no.map(|no| (result, no))
 }
 
-/// The document names this function and does not print it: Equation 3-2 for a level plane, and the square's border.
+/// The document names this function and does not print it: Equation 3-2 for a level plane, and the
+/// square's border.
 pub(super) fn get_inter_point_surface(pixel: DVec3, dir: DVec3, sur: &Surface) -> Option<DVec3> {
     let t = (sur.height - pixel.y) / dir.y;
     let (x, z) = (pixel.x + t * dir.x, pixel.z + t * dir.z);

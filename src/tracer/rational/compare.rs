@@ -1,5 +1,5 @@
-//! Promise: at angles whose sine and cosine are rational, every decision is that of exact arithmetic, whatever the number; a
-//! number that cannot tell says so.
+//! Promise: at angles whose sine and cosine are rational, every decision is that of exact
+//! arithmetic, whatever the number; a number that cannot tell says so.
 
 use bumpalo::Bump;
 
@@ -87,13 +87,15 @@ impl Traced<'_> {
 
 type Decisions = Vec<Option<Decision>>;
 
-/// What rationals decide, and how many of the pixels double-doubles and f64s with a bound leave in doubt.
+/// What rationals decide, and how many of the pixels double-doubles and f64s with a bound leave in
+/// doubt.
 pub(super) struct Compared {
     pub(super) decisions: Vec<Decision>,
     in_doubt: [usize; 2],
 }
 
-/// Decides pixels in rationals, in every kind of number, and at α = 0 by the kernels `reference` and `exact` themselves.
+/// Decides pixels in rationals, in every kind of number, and at α = 0 by the kernels `reference`
+/// and `exact` themselves.
 pub(super) fn compare(
     scene: &Scene,
     stage: Stage,
@@ -160,7 +162,8 @@ pub(super) fn compare_whole(scene: &Scene, stage: Stage, turn: Turn, size: u32) 
     compare(scene, stage, turn, size, &pixels)
 }
 
-/// The same of a picture of which double-doubles, and f64s, may leave at most so many pixels in doubt.
+/// The same of a picture of which double-doubles, and f64s, may leave at most so many pixels in
+/// doubt.
 fn compare_easy(scene: &Scene, stage: Stage, turn: Turn, size: u32, most: [usize; 2]) {
     let Compared { in_doubt, .. } = compare_whole(scene, stage, turn, size);
     assert!(
@@ -172,7 +175,8 @@ fn compare_easy(scene: &Scene, stage: Stage, turn: Turn, size: u32, most: [usize
 #[test]
 fn built_in_scene_in_every_stage() {
     for stage in STAGES {
-        // Samples on edges are more than f64s can tell, and so is the surface's border. Five more than double-doubles can.
+        // Samples on edges are more than f64s can tell, and so is the surface's border. Five more
+        // than double-doubles can.
         let most = if stage >= Stage::Shadow {
             [5, 76]
         } else {

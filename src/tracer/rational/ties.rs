@@ -1,8 +1,10 @@
-//! Promise: a tie that lies exactly on a sample is resolved as the picture's definition says, at every angle.
+//! Promise: a tie that lies exactly on a sample is resolved as the picture's definition says, at
+//! every angle.
 //!
-//! Lengths are in 128ths. With N = 20480 c, at an angle whose sine and cosine are fractions of c, every point whose
-//! coordinates are such lengths, or simple fractions of them, lies on a sample's eye ray: so the geometry is chosen first,
-//! and [`sample`] finds its pixel, or says that there is none.
+//! Lengths are in 128ths. With N = 20480 c, at an angle whose sine and cosine are fractions of c,
+//! every point whose coordinates are such lengths, or simple fractions of them, lies on a sample's
+//! eye ray: so the geometry is chosen first, and [`sample`] finds its pixel, or says that there is
+//! none.
 
 use dashu_ratio::Relaxed;
 
@@ -82,7 +84,8 @@ fn sum(a: &Vector, b: &Vector) -> Vector {
     [&a[0] + &b[0], &a[1] + &b[1], &a[2] + &b[2]]
 }
 
-/// Whether a surface with this outward normal is turned toward the eye, or toward what the eye's mirrored ray comes from.
+/// Whether a surface with this outward normal is turned toward the eye, or toward what the eye's
+/// mirrored ray comes from.
 fn faces_eye(turn: Turn, [x, y, z]: Place, in_mirror: bool) -> bool {
     let y = if in_mirror { -y } else { y };
     10 * (x * turn.0 + z * turn.1) + 3 * y * turn.2 > 0
@@ -106,7 +109,8 @@ fn sample(turn: Turn, [x, y, z]: &Vector) -> Option<(u32, u32)> {
     Some((column?, row?))
 }
 
-/// Compares the sample at each of the points, and those around it, and returns what the picture shows at the points.
+/// Compares the sample at each of the points, and those around it, and returns what the picture
+/// shows at the points.
 fn decisions(scene: &Scene, stage: Stage, turn: Turn, places: &[Vector]) -> Vec<Option<Decision>> {
     let samples: Vec<_> = places.iter().map(|place| sample(turn, place)).collect();
     let around = samples.iter().flatten().flat_map(|&(column, row)| {
@@ -130,7 +134,8 @@ fn shows(decision: Decision, number: u16) -> Option<bool> {
     }
 }
 
-/// Checks that where the picture shows these places, and it shows most, it does not show the surface's own colour.
+/// Checks that where the picture shows these places, and it shows most, it does not show the
+/// surface's own colour.
 fn check_not_plain(decisions: &[Option<Decision>]) {
     assert!(!decisions.contains(&Some(Decision::Surface)));
     let shown = decisions.iter().flatten().count();
@@ -153,7 +158,8 @@ fn corners(v: [Place; 4]) -> Vec<Place> {
     v.into_iter().chain(edges.map(middle)).collect()
 }
 
-/// Checks that vertices and edges belong to their solid, as it is seen, as it is mirrored, and to its shadow.
+/// Checks that vertices and edges belong to their solid, as it is seen, as it is mirrored, and to
+/// its shadow.
 fn check_corners(vertices: [Place; 4], to_light: Place, turns: &[Turn]) {
     let scene = scene(to_light, Some([-64, 512]), &[tetrahedron(vertices)]);
     let corners = corners(vertices);
@@ -340,7 +346,8 @@ fn border_of_the_surface() {
 #[test]
 fn shadow_of_the_surfaces_border() {
     let mut seen = 0;
-    // A point, the way to the light from below, and the half width that ends where the ray goes through.
+    // A point, the way to the light from below, and the half width that ends where the ray goes
+    // through.
     for (place, to_light, half_width) in [
         ([18, -24, 40], [3, -4, 0], 48),
         ([-18, -24, 40], [3, -4, 0], 40),
@@ -464,8 +471,8 @@ fn light_in_the_surfaces_plane() {
         check_not_plain(&decisions(&resting, Stage::Shadow, turn, &grazed));
     }
 
-    // A point of a sphere in the surface's plane, but not on it, from where the light lies behind a side or a corner of
-    // the surface, along a side, or beyond all of it.
+    // A point of a sphere in the surface's plane, but not on it, from where the light lies behind a
+    // side or a corner of the surface, along a side, or beyond all of it.
     let mut seen = 0;
     for (place, to_light, expected) in [
         ([-100, -64, 30], [1, 0, 0], true),

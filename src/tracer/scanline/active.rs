@@ -1,7 +1,8 @@
-//! From the left end of a row to the right: which borders are crossed where, and what is seen between.
+//! From the left end of a row to the right: which borders are crossed where, and what is seen
+//! between.
 //!
-//! Rows are crossed [`ROWS`] at a time, and only by the borders that reach them. From one row to the next the crossings move
-//! little, so they are kept in order rather than put in order.
+//! Rows are crossed [`ROWS`] at a time, and only by the borders that reach them. From one row to
+//! the next the crossings move little, so they are kept in order rather than put in order.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
@@ -20,7 +21,8 @@ enum Crosses {
     No,
     /// Twice: where its columns begin and end is certain in all of these rows.
     Certainly,
-    /// Four times: where they begin possibly and certainly, and where they end certainly and possibly.
+    /// Four times: where they begin possibly and certainly, and where they end certainly and
+    /// possibly.
     Possibly,
 }
 
@@ -70,8 +72,8 @@ struct Piece {
 
 /// The crossings of a row from the left, and what is seen between them.
 ///
-/// That depends on which borders have been crossed, and not on where. So it is kept from row to row, and where two crossings change
-/// places it is forgotten only between these two.
+/// That depends on which borders have been crossed, and not on where. So it is kept from row to
+/// row, and where two crossings change places it is forgotten only between these two.
 #[derive(Default)]
 pub(crate) struct ActiveEdges {
     coverage: Coverage,
@@ -89,10 +91,12 @@ pub(crate) struct ActiveEdges {
     seen: Vec<Packed>,
     /// The columns of these in that row.
     here: Vec<u32>,
-    /// Bit by bit, the rows in which they come in another order, and those that have columns of which it is not known what is seen.
+    /// Bit by bit, the rows in which they come in another order, and those that have columns of
+    /// which it is not known what is seen.
     disordered: u64,
     wanting: u64,
-    /// What the row that was entered last shows, if `is_planned`; neighbours that show the same are one. The first is none.
+    /// What the row that was entered last shows, if `is_planned`; neighbours that show the same
+    /// are one. The first is none.
     pieces: Vec<Piece>,
     is_planned: bool,
     /// The places in `seen` where nobody has looked.
@@ -189,7 +193,8 @@ impl ActiveEdges {
         self.crossings.get(number).copied().unwrap_or(self.end)
     }
 
-    /// Sees to it that the crossings come in the order of a row. Returns how often two have changed places.
+    /// Sees to it that the crossings come in the order of a row. Returns how often two have changed
+    /// places.
     fn order(&mut self, row: usize) -> usize {
         let place = |crossing: &Crossing| self.places[crossing.0 as usize][row];
         self.here.clear();
@@ -220,7 +225,8 @@ impl ActiveEdges {
     /// What rows show where the crossings are in this order, as far as it is known.
     #[inline(always)]
     fn plan<S: Simd>(&mut self, simd: S) {
-        // What comes next is not to be foreseen: every step does the same, and counts or does not count.
+        // What comes next is not to be foreseen: every step does the same, and counts or does not
+        // count.
         let nothing = Piece {
             to: self.end,
             seen: Packed::OPEN,
@@ -356,8 +362,9 @@ impl ActiveEdges {
         crossings.clear();
         seen.clear();
         let mut arrivals = self.arrivals.iter().peekable();
-        // How many columns of crossings that are gone, or that have come, begin before here and have not ended. What was seen where there
-        // were none still is where there are none.
+        // How many columns of crossings that are gone, or that have come, begin before here and
+        // have not ended. What was seen where there were none still is where there are
+        // none.
         let (mut gone, mut come) = (0, 0);
         let mut before = self.seen[0];
         for i in 0..self.seen.len() {

@@ -1,5 +1,5 @@
-//! The bounds on what the pixels of spheres are shaded with, held against double-doubles: no error is larger than its bound, and no bound
-//! is out of all proportion to the errors.
+//! The bounds on what the pixels of spheres are shaded with, held against double-doubles: no error
+//! is larger than its bound, and no bound is out of all proportion to the errors.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -86,7 +86,8 @@ struct Found {
 #[derive(Default)]
 struct Chorded {
     all: usize,
-    /// Those that a row says to be known, of these those that it says to face the light or not, and those it says may have a highlight.
+    /// Those that a row says to be known, of these those that it says to face the light or not,
+    /// and those it says may have a highlight.
     known: usize,
     settled: usize,
     bright: usize,
@@ -95,7 +96,8 @@ struct Chorded {
 }
 
 impl Chorded {
-    /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no highlight to see.
+    /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no
+    /// highlight to see.
     fn note(
         &mut self,
         chord: &SphereSpans,
@@ -150,7 +152,8 @@ struct Case<'c> {
     color: Vector<DoubleDouble>,
     ball: RowSphere,
     grid: Grid,
-    /// Another sphere's centre, and the forms that tell whether that is between a pixel and the light.
+    /// Another sphere's centre, and the forms that tell whether that is between a pixel and the
+    /// light.
     other: Vector<DoubleDouble>,
     forms: [LinearForm; 4],
 }

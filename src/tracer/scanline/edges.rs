@@ -1,7 +1,8 @@
 //! The edges of a frame: every border on the screen at which what a row shows may change.
 //!
-//! A silhouette, an edge between two faces, the outline of a shadow or of a mirror image is a straight line or an ellipse on the screen,
-//! because eye rays are parallel, and so are those to the light.
+//! A silhouette, an edge between two faces, the outline of a shadow or of a mirror image is a
+//! straight line or an ellipse on the screen, because eye rays are parallel, and so are those to
+//! the light.
 
 pub(super) mod ellipse;
 pub(super) mod enclosure;

@@ -94,7 +94,8 @@ pub(crate) fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
 /// Whole numbers of columns, below 2³².
 #[inline(always)]
 pub(crate) fn put_columns<S: Simd>(places: S::f64s, columns: &mut [u32]) {
-    // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper half.
+    // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper
+    // half.
     let shifted = places + f64::from_bits((1023 + 52) << 52);
     for (column, place) in columns.iter_mut().zip(shifted.as_slice()) {
         *column = place.to_bits() as u32;

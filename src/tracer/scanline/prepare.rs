@@ -1,4 +1,5 @@
-//! A frame, from the scene as it is seen: solids and surface, with the edges and paints that they bring.
+//! A frame, from the scene as it is seen: solids and surface, with the edges and paints that they
+//! bring.
 
 pub(super) mod builder;
 pub(super) mod floor;

@@ -8,8 +8,9 @@ use crate::tracer::scanline::grid::{ROWS, put_columns};
 /// One bit for each of them.
 const ALL: u64 = (1 << ROWS) - 1;
 
-/// In each of some rows, a run of columns of which some are certain and, at both ends, some only possible: `possible` holds `certain`.
-/// Every run goes from its first column to before its last; one without columns begins and ends in the same place.
+/// In each of some rows, a run of columns of which some are certain and, at both ends, some only
+/// possible: `possible` holds `certain`. Every run goes from its first column to before its last;
+/// one without columns begins and ends in the same place.
 pub(crate) struct Spans {
     pub(crate) possible: [[u32; ROWS]; 2],
     pub(crate) certain: [[u32; ROWS]; 2],
@@ -27,7 +28,8 @@ impl Spans {
         is_certain: true,
     };
 
-    /// The columns of as many rows as there are lanes, from one on: whole numbers, of rows that have any at all.
+    /// The columns of as many rows as there are lanes, from one on: whole numbers, of rows that
+    /// have any at all.
     #[inline(always)]
     pub(crate) fn put<S: Simd>(
         &mut self,
@@ -53,7 +55,8 @@ impl Spans {
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
 
-    /// Puts the runs without columns where the next row's run begins that has some, if there are any.
+    /// Puts the runs without columns where the next row's run begins that has some, if there are
+    /// any.
     pub(crate) fn put_empty_beside(&mut self) {
         let mut empty = !self.filled & ALL;
         if empty == ALL {

@@ -1,4 +1,5 @@
-//! What is visible in a span: from the edges that hold it to one paint, one sphere, or a pixel to be asked by itself.
+//! What is visible in a span: from the edges that hold it to one paint, one sphere, or a pixel to
+//! be asked by itself.
 
 pub(super) mod coverage;
 pub(super) mod depth;

@@ -19,16 +19,16 @@ pub(super) struct Growth {
 }
 
 impl Growth {
-    /// The window has a new size. The first one after it was asked to grow is as large as the window
-    /// manager let it become.
+    /// The window has a new size. The first one after it was asked to grow is as large as the
+    /// window manager let it become.
     pub(super) fn came(&mut self, surface: UVec2) {
         if let (Some([_, after]), Some(_)) = (&mut self.grown, self.awaited.take()) {
             *after = surface;
         }
     }
 
-    /// Asks a window that is neither maximised nor fills the screen to become as large as `wanted` for the panel, where the monitor has
-    /// the room. Its new size, where it has that at once.
+    /// Asks a window that is neither maximised nor fills the screen to become as large as `wanted`
+    /// for the panel, where the monitor has the room. Its new size, where it has that at once.
     pub(super) fn grow(
         &mut self,
         window: &Window,
@@ -47,7 +47,8 @@ impl Growth {
         self.ask(window, size)
     }
 
-    /// Asks a window that has grown to shrink again, unless it was given another size meanwhile. Its new size, where it has that at once.
+    /// Asks a window that has grown to shrink again, unless it was given another size meanwhile.
+    /// Its new size, where it has that at once.
     pub(super) fn shrink(&mut self, window: &Window, surface: UVec2) -> Option<PhysicalSize<u32>> {
         let [before, after] = self.grown.take()?;
         if is_fixed(window) || after != surface || before == surface {
@@ -72,8 +73,8 @@ fn is_fixed(window: &Window) -> bool {
     window.fullscreen().is_some() || window.is_maximized()
 }
 
-/// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by `growth`, where the desktop says where
-/// it is.
+/// Moves the window to the left by as much as it would reach beyond its monitor when it is wider by
+/// `growth`, where the desktop says where it is.
 fn make_room(window: &Window, growth: u32) {
     let (Ok(place), Some(monitor)) = (window.outer_position(), window.current_monitor()) else {
         return;

@@ -73,7 +73,8 @@ pub(super) const EIGHT_BITS: ColorBufferType = ColorBufferType::Rgb {
     b_size: 8,
 };
 
-/// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop could shine.
+/// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop
+/// could shine.
 pub(super) fn config(display: &Display) -> Result<Config, Failure> {
     let template = ConfigTemplateBuilder::new()
         .with_alpha_size(0)

@@ -11,8 +11,8 @@ use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::vector::Vector;
 
-/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go linearly with Y: an ellipse with a horizontal
-/// chord in every row.
+/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go
+/// linearly with Y: an ellipse with a horizontal chord in every row.
 pub(crate) struct Ellipse {
     /// The middle of the chord at Y = 0, and how it moves with Y.
     center: (f64, f64),
@@ -49,7 +49,8 @@ impl RowOffset {
     }
 }
 
-/// Lines in one direction from the points of a sheet: what all spheres that they meet have in common.
+/// Lines in one direction from the points of a sheet: what all spheres that they meet have in
+/// common.
 pub(crate) struct Lines<'s> {
     plane: &'s PixelPlane,
     direction: Direction<Bounded>,
@@ -69,7 +70,8 @@ impl<'s> Lines<'s> {
         let per_column = plane.per_column.cross(l);
         let per_row = plane.per_row.cross(l);
         let speed = per_column.squared_length();
-        // The chord's middle is where the moment is shortest. There it points across both l and what a column adds to it.
+        // The chord's middle is where the moment is shortest. There it points across both l and
+        // what a column adds to it.
         let across = l.cross(per_column);
         let across = across.divided_by(across.length() * speed.sqrt());
         Lines {
@@ -111,13 +113,15 @@ impl Ellipse {
                 * MORE
         };
         let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
-        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one rounding. The product rounds too.
+        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one
+        // rounding. The product rounds too.
         let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
         let shift = zero.error() + U * away;
         let off_error =
             (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
-        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the error says, and farther away
-        // because the slope is known to a quarter. Otherwise nothing is known.
+        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the
+        // error says, and farther away because the slope is known to a quarter. Otherwise
+        // nothing is known.
         let known = slope.error() < slope.value().abs() / 4.0;
         let limit = if known {
             (radius + off_error) * MORE
@@ -129,8 +133,8 @@ impl Ellipse {
             + (2.0 * limit + off_error) * off_error
             + 2.0 * U * (limit * limit + squared_radius.value().abs()))
             * MORE;
-        // The chord's half is at most the radius. Its root, the sum with the middle, a third of it and the sum with N/2 round
-        // by less than u of |middle| + radius + N each.
+        // The chord's half is at most the radius. Its root, the sum with the middle, a third of it
+        // and the sum with N/2 round by less than u of |middle| + radius + N each.
         let middle = center.0.value().abs() + center.1.value().abs() * reach;
         let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
         let all = [
@@ -158,7 +162,8 @@ impl Ellipse {
         }
     }
 
-    /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10 (Y − c_y) − 3 (Z − c_z))/√109.
+    /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10
+    /// (Y − c_y) − 3 (Z − c_z))/√109.
     pub(crate) fn outline(center: Vector<Bounded>, radius: Bounded, grid: Grid) -> Ellipse {
         let root = Bounded::exact(109.0).sqrt();
         let [three, ten] = [3.0, 10.0].map(Bounded::exact);

@@ -1,6 +1,7 @@
 //! Where a border crosses rows, before that is rounded to columns.
 
-/// Where columns begin and end in as many rows as there are lanes, given in columns: the first at or after a place, up to another place.
+/// Where columns begin and end in as many rows as there are lanes, given in columns: the first at
+/// or after a place, up to another place.
 pub(crate) struct RunEnclosure<V> {
     pub(crate) possible: [V; 2],
     pub(crate) certain: [V; 2],

@@ -21,7 +21,8 @@ pub(crate) struct HalfPlane {
 
 /// How rows cross a border.
 enum Crossing {
-    /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is to the right of it, or to the left.
+    /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is
+    /// to the right of it, or to the left.
     Right(Root),
     Left(Root),
     /// Not to be told from not at all. A bound on the error of the sum but for the part of Y.
@@ -49,8 +50,9 @@ impl HalfPlane {
         let carried = constant.error() + (column.error() + row.error()) * reach;
         let magnitude = constant.value().abs() + row.value().abs() * reach;
         let across = column.value().abs() * reach;
-        // In columns the root is N/2 − (constant + row · Y)/(3 · column). The errors move it by that part of theirs. The inverse of
-        // 3 · column rounds by 2u, `at` and `per_row` by 2u more, the product with Y and the sum with it by u each: less than 8u of the
+        // In columns the root is N/2 − (constant + row · Y)/(3 · column). The errors move it by
+        // that part of theirs. The inverse of 3 · column rounds by 2u, `at` and `per_row`
+        // by 2u more, the product with Y and the sum with it by u each: less than 8u of the
         // terms' magnitudes, and of N/2 and the root, which is below 3N where it matters.
         let inverse = 1.0 / (3.0 * column.value());
         let root = Root {

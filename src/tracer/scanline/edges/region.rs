@@ -2,13 +2,14 @@
 //!
 //! # Why rows
 //!
-//! Eye rays are parallel, and so are those to the light. So every border in the picture that does not lie on a sphere is a
-//! straight line or an ellipse on the screen: a silhouette, an edge between faces, the surface's sides, the outline of a mirror
-//! image, a shadow on the surface or on a face. Each is known as a polynomial in X and Y, the place on the screen in thirds of
+//! Eye rays are parallel, and so are those to the light. So every border in the picture that does
+//! not lie on a sphere is a straight line or an ellipse on the screen: a silhouette, an edge
+//! between faces, the surface's sides, the outline of a mirror image, a shadow on the surface or on
+//! a face. Each is known as a polynomial in X and Y, the place on the screen in thirds of
 //! a pixel from its centre, and a row of pixels, on which Y is fixed, crosses it at a root.
 //!
-//! A root is computed in f64 with a bound on its error, derived where it is used. The columns beyond the bound are decided;
-//! those within it, rarely one, are asked one by one.
+//! A root is computed in f64 with a bound on its error, derived where it is used. The columns
+//! beyond the bound are decided; those within it, rarely one, are asked one by one.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;

@@ -36,7 +36,8 @@ pub(crate) struct EdgeTable<'f> {
     pub(crate) of: &'f [Edge],
     /// What they are of, 64 at a time.
     pub(crate) kinds: &'f [Kinds],
-    /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where the last are fewer, the others cross none.
+    /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where
+    /// the last are fewer, the others cross none.
     rows: &'f [[[u32; 64]; 2]],
 }
 

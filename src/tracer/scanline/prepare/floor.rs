@@ -17,7 +17,8 @@ use crate::tracer::vector::Vector;
 /// The surface, from stage 5 on.
 pub(crate) struct Floor<'f> {
     pub(crate) mirrored: Option<Solids<'f>>,
-    /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its error.
+    /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its
+    /// error.
     depth: [f64; 3],
     pub(crate) paint: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
@@ -45,8 +46,8 @@ impl<'f> Floor<'f> {
             per_row: Vector::new(zero, zero, -(ten * third)),
             plane: Some(floor.surface.support),
         };
-        // Three times as large, nothing is a third and rounds: of a surface that is level with the rows, the border may lie on
-        // all pixels of one.
+        // Three times as large, nothing is a third and rounds: of a surface that is level with the
+        // rows, the border may lie on all pixels of one.
         let scaled = [
             plane.origin * three,
             plane.per_column * three,
@@ -60,8 +61,8 @@ impl<'f> Floor<'f> {
         let scene = picture.scene;
         let solids = scene.spheres().len() + scene.tetrahedra().len();
         let magnitude = height.value().abs() + grid.reach;
-        // Rays that rise from the surface meet what is above it ahead. They may touch it at their very beginning, but there the solid is
-        // seen, and not the surface.
+        // Rays that rise from the surface meet what is above it ahead. They may touch it at their
+        // very beginning, but there the solid is seen, and not the surface.
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let rows = floor.extent.rows(grid.size);
@@ -88,7 +89,8 @@ impl<'f> Floor<'f> {
         }
     }
 
-    /// The parameter at which the eye rays at Y reach it, from the least to the most that it can be.
+    /// The parameter at which the eye rays at Y reach it, from the least to the most that it can
+    /// be.
     pub(crate) fn depth_at(&self, y: f64) -> (f64, f64) {
         let [constant, per_row, error] = self.depth;
         let depth = constant + per_row * y;

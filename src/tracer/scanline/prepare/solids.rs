@@ -368,8 +368,8 @@ fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, ([f64; 3], f
     (plane, (depths.map(Bounded::value), error))
 }
 
-/// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead` of all the sheet's pixels it is
-/// not asked whether it is.
+/// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead`
+/// of all the sheet's pixels it is not asked whether it is.
 pub(crate) fn shadows_on<'f>(
     plane: &PixelPlane,
     view: &View<'_, Bounded>,

@@ -8,14 +8,16 @@ use crate::tracer::scanline::shade::sphere::{LinearForm, Stretch};
 pub(crate) enum Caster<'f> {
     /// Any point within all of these half-spaces is in its shadow.
     Polyhedron(&'f [LinearForm]),
-    /// Any point that is before it, and from which the way to the light passes its centre near enough.
+    /// Any point that is before it, and from which the way to the light passes its centre near
+    /// enough.
     Sphere(&'f ShadowCylinder),
 }
 
 /// Points in the shadow of a ball.
 pub(crate) struct ShadowCylinder {
     pub(crate) before: LinearForm,
-    /// The components of a vector, of which the squared length is at most `reach`; a bound on the error of the difference.
+    /// The components of a vector, of which the squared length is at most `reach`; a bound on the
+    /// error of the difference.
     pub(crate) moment: [LinearForm; 3],
     pub(crate) reach: f64,
     pub(crate) error: f64,
@@ -54,7 +56,8 @@ impl ShadowCylinder {
             .iter()
             .map(|form| form.magnitude * form.magnitude)
             .sum();
-        // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six operations round, each by less than u of all magnitudes.
+        // |(a + ε)² − a²| ≤ 2|a|ε + ε²; six operations round, each by less than u of all
+        // magnitudes.
         let carried: f64 = moment
             .iter()
             .map(|form| (2.0 * form.magnitude + form.error) * form.error)

@@ -40,11 +40,12 @@ pub(crate) struct Run<'r> {
     pub(crate) shading: &'r mut Shading,
 }
 
-// Where the processor can multiply and add at once, `mul_add` rounds once instead of twice. So its errors are within the same bounds, and
-// what is certain of a sample or a shadow is the same with and without; plain code, which is not certain, does not use it.
+// Where the processor can multiply and add at once, `mul_add` rounds once instead of twice. So its
+// errors are within the same bounds, and what is certain of a sample or a shadow is the same with
+// and without; plain code, which is not certain, does not use it.
 //
-// No closures below: the instructions of a level are only there for what is inlined into its dispatch, which closures
-// given to other functions are not.
+// No closures below: the instructions of a level are only there for what is inlined into its
+// dispatch, which closures given to other functions are not.
 
 impl Run<'_> {
     /// X of a pixel, and of that as many pixels on as there are f64 lanes.
@@ -117,7 +118,8 @@ pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'
     while done < count {
         // The last vector may lie on part of the one before it.
         let next = (first + width).min(last);
-        // A root takes its time: that of the next vector is begun before this one waits for its own.
+        // A root takes its time: that of the next vector is begun before this one waits for its
+        // own.
         let [low, high] = lights;
         if next > first {
             lights = both_lights(simd, ball, &light, m, run, next);
@@ -317,7 +319,8 @@ fn shadowed<S: Simd>(
     (all_dark, all_known)
 }
 
-/// The ambient part of samples as they lie in memory, less and more than it is by a bound on the errors of all but the highlight.
+/// The ambient part of samples as they lie in memory, less and more than it is by a bound on the
+/// errors of all but the highlight.
 #[inline(always)]
 pub(crate) fn ambient<S: Simd>(simd: S, ball: &RowSphere, error: f64) -> [[S::f64s; 3]; 2] {
     let [red, green, blue] = of_cycle(simd, &ball.color.ambient);
@@ -327,7 +330,8 @@ pub(crate) fn ambient<S: Simd>(simd: S, ball: &RowSphere, error: f64) -> [[S::f6
     ]
 }
 
-/// Samples of pixels in the light, from X = `x` on, as they lie in memory: from below and from above. `light` is their n·l.
+/// Samples of pixels in the light, from X = `x` on, as they lie in memory: from below and from
+/// above. `light` is their n·l.
 #[inline(always)]
 pub(crate) fn lit<S: Simd>(
     simd: S,
@@ -372,12 +376,14 @@ fn highlight<S: Simd>(
     let [across, off, out] = halfway.at;
     let (across, off, out) = (hits.q - across, m - off, hits.s - out);
     let squared = across * across + out * out + off * off;
-    // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight is bright.
+    // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight is
+    // bright.
     let scale = 0.5 * ball.inverse_radius * ball.inverse_radius;
     let missing = (squared * scale).min(1.0 - ball.highlight);
     let power = power(simd, -missing + 1.0, ball.exponent);
     let [constant, slope] = halfway.errors;
-    // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for max(X, x) instead of x.
+    // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for
+    // max(X, x) instead of x.
     let steep = power * (2.0 * 1.06) + 1.06 * halfway.least;
     (power, (missing * slope + constant) * steep)
 }

@@ -1,4 +1,5 @@
-//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: what the shading of all its spheres has in common.
+//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: what the shading of all
+//! its spheres has in common.
 
 use crate::number::{Bounded, Real};
 use crate::tracer::scanline::rounding::MORE;

@@ -1,13 +1,17 @@
-//! A sphere in neighbouring rows: which of its pixels can be shaded at once, and which need not be asked where they face.
+//! A sphere in neighbouring rows: which of its pixels can be shaded at once, and which need not be
+//! asked where they face.
 //!
-//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave where s is multiplied with what is not negative, and
-//! convex where it is multiplied with what is not positive; its negative is concave then. A concave function is positive between
-//! any two columns in which it is positive. Where it is negative in one column and positive in one to the right of it, it is
-//! negative in all columns to the left of the first: were it not in one of them, it would be no less than the least of that and the
-//! second, between them. And where it is less in a column than in the next, it is less still in all columns before.
+//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave where s is
+//! multiplied with what is not negative, and convex where it is multiplied with what is not
+//! positive; its negative is concave then. A concave function is positive between any two columns
+//! in which it is positive. Where it is negative in one column and positive in one to the right of
+//! it, it is negative in all columns to the left of the first: were it not in one of them, it would
+//! be no less than the least of that and the second, between them. And where it is less in a column
+//! than in the next, it is less still in all columns before.
 //!
-//! So the columns where it changes sign may be guessed, by the roots of a quadratic equation. The form is asked in few columns beside
-//! these, with its bound as in `shade/sphere.rs`, and what they tell of all others is certain. Where they do not, the row is left unsettled.
+//! So the columns where it changes sign may be guessed, by the roots of a quadratic equation. The
+//! form is asked in few columns beside these, with its bound as in `shade/sphere.rs`, and what they
+//! tell of all others is certain. Where they do not, the row is left unsettled.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
@@ -17,7 +21,8 @@ use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
 
-/// Rounding moves a place by less than so many columns; where that is not so, what is guessed with it is found to be wrong.
+/// Rounding moves a place by less than so many columns; where that is not so, what is guessed with
+/// it is found to be wrong.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;
 
 /// In each of some rows, the columns of a run.
@@ -60,7 +65,8 @@ pub(crate) struct SphereSpans {
     pub(crate) bright: Columns,
     /// The casters that may throw a shadow on them, by [`bit_of`].
     pub(crate) shaders: u64,
-    /// The columns in which it faces the light, or those in which it does not; `None` where each is to be asked.
+    /// The columns in which it faces the light, or those in which it does not; `None` where each
+    /// is to be asked.
     pub(crate) facing: Option<(Columns, bool)>,
 }
 
@@ -239,7 +245,8 @@ impl<S: Simd> InRows<'_, S> {
         let from = (in_columns::<S>(self.grid, middle - half) + NUDGE).ceil();
         let to = (in_columns::<S>(self.grid, middle + half) - NUDGE).floor() + 1.0;
         let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
-        // The farther from the middle the less, also as f64 computes it: what is so at both ends is so between them.
+        // The farther from the middle the less, also as f64 computes it: what is so at both ends is
+        // so between them.
         let (a, b) = (self.across(from), self.across(to - 1.0));
         let is_deep = (self.squared - a * a).simd_ge(least) & (self.squared - b * b).simd_ge(least);
         let is_chord = is_deep & from.simd_lt(to);
@@ -254,8 +261,8 @@ impl<S: Simd> InRows<'_, S> {
         (self.m * form.off + form.constant + q * form.across + s * form.out - level) * sign
     }
 
-    /// Of the columns `known` those in which a form is above `level`, if it is concave, or below, if it is convex; and in which rows
-    /// it certainly is there, and not in the others.
+    /// Of the columns `known` those in which a form is above `level`, if it is concave, or below,
+    /// if it is convex; and in which rows it certainly is there, and not in the others.
     #[inline(always)]
     fn arc(
         &self,
@@ -299,7 +306,8 @@ impl<S: Simd> InRows<'_, S> {
         let top = (self.squared.max(zero) * inverse).sqrt() * a + self.ball.center;
         let top = in_columns::<S>(self.grid, top).floor();
         let top = top.min(last - one).max(first);
-        // The last column before those, the first and the last of them, and the next; or of none, two columns on either side of the top.
+        // The last column before those, the first and the last of them, and the next; or of none,
+        // two columns on either side of the top.
         let columns = [
             is_none.select(top - one, from - one),
             is_none.select(top, from),

@@ -1,11 +1,12 @@
 //! A sphere in a row: the f64s that its pixels are shaded with, and bounds on their errors.
 //!
-//! In a row, with q = X − c_x and m as in [`Ellipse::outline`], the hit's normal, of the radius's length, is
+//! In a row, with q = X − c_x and m as in [`Ellipse::outline`], the hit's normal, of the radius's
+//! length, is
 //!
 //! q (1, 0, 0) + m (0, 10, −3)/√109 + s (0, 3, 10)/√109, s = √(R² − m² − q²),
 //!
-//! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at the hit are linear forms in q, m
-//! and s, and per pixel there are a root, a few products and sums.
+//! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at
+//! the hit are linear forms in q, m and s, and per pixel there are a root, a few products and sums.
 
 use std::cmp::Ordering;
 
@@ -18,8 +19,8 @@ use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
-/// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have a small s: those with
-/// s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
+/// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have
+/// a small s: those with s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
 pub(crate) const ZONES: usize = 2;
 
 /// What R is divided by for the least s of each zone.
@@ -61,8 +62,9 @@ impl LinearForm {
         self.constant + self.off * m
     }
 
-    /// The least and the most that f64 computes of it in a pixel of a stretch, by these operations: rounding keeps order, so where a term
-    /// is less it is not more rounded, and so are sums. Therefore this needs no bound of its own.
+    /// The least and the most that f64 computes of it in a pixel of a stretch, by these operations:
+    /// rounding keeps order, so where a term is less it is not more rounded, and so are sums.
+    /// Therefore this needs no bound of its own.
     pub(crate) fn along(&self, stretch: &Stretch) -> (f64, f64) {
         let ends = |factor: f64, (low, high): (f64, f64)| {
             let (a, b) = (low * factor, high * factor);
@@ -96,7 +98,8 @@ pub(crate) struct Halfway {
     pub(crate) form: LinearForm,
     /// R h, in the axes of q, m and s.
     pub(crate) at: [f64; 3],
-    /// A bound on n times the error of 1 − n·h in any zone: a constant, and what 1 − n·h is multiplied with.
+    /// A bound on n times the error of 1 − n·h in any zone: a constant, and what 1 − n·h is
+    /// multiplied with.
     pub(crate) errors: [f64; 2],
     /// 2¹⁻ⁿ.
     pub(crate) least: f64,
@@ -133,7 +136,8 @@ impl Known {
 
     /// A bound on the error of a form without a constant where that of s is at most `out`.
     fn error(&self, factors: &[Bounded; 3], out: f64) -> f64 {
-        // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the sum of all magnitudes.
+        // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the
+        // sum of all magnitudes.
         let terms = factors.iter().zip([self.across, self.off, out]);
         let carried: f64 = terms
             .map(|(factor, error)| {
@@ -147,16 +151,19 @@ impl Known {
     /// `h` is that of a view, `radius` the sphere's.
     fn halfway(&self, h: [Bounded; 3], highlight: &Highlight, radius: Bounded) -> Halfway {
         let at = h.map(|component| component * radius);
-        // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its rounding, which is less than u of D,
-        // that of Y is at most (|D| |ε| + |ε|²)/R² + 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
-        // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
+        // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its
+        // rounding, which is less than u of D, that of Y is at most (|D| |ε| + |ε|²)/R² +
+        // 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
+        // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at
+        // 1/√n.
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
         let known = [self.across, self.off, self.out[ZONES - 1]];
         let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
         let off = off / radius.value() * MORE;
-        // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1 products, by u of what they give.
+        // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
+        // products, by u of what they give.
         let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
         let slope = n * (off / steepest + inexact) * MORE;
         let tame = constant + slope * highlight.limit < 1.0 / 64.0;
@@ -196,11 +203,13 @@ pub(crate) struct RowSphere {
     pub(crate) color: Coefficients<Cycle>,
     /// In each zone, a bound on the error of any channel, but for what the power's adds.
     pub(crate) errors: [f64; ZONES],
-    /// Whether points turned away from the light are in shadow, and not just without its diffuse part.
+    /// Whether points turned away from the light are in shadow, and not just without its diffuse
+    /// part.
     pub(crate) shadows: bool,
 }
 
-/// What is multiplied in ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the colour.
+/// What is multiplied in ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
+/// colour.
 #[derive(Clone, Copy)]
 pub(crate) struct Coefficients<T> {
     pub(crate) ambient: T,
@@ -208,7 +217,8 @@ pub(crate) struct Coefficients<T> {
     pub(crate) specular: T,
 }
 
-/// Red, green, blue, red and so on, as samples lie in memory: a vector of up to 8 lanes, from any of the three on.
+/// Red, green, blue, red and so on, as samples lie in memory: a vector of up to 8 lanes, from any
+/// of the three on.
 pub(crate) type Cycle = [f64; 8 + 2];
 
 impl RowSphere {
@@ -223,7 +233,8 @@ impl RowSphere {
         let radius = sphere.radius.at_most() * MORE;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
         let across = (sphere.center.x.error() * (1.0 + U) + U * radius) * MORE;
-        // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference round.
+        // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference
+        // round.
         let squared =
             outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
@@ -240,8 +251,8 @@ impl RowSphere {
         let halfway = lighting
             .halfway
             .map(|h| known.halfway(h, highlight, sphere.radius));
-        // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that is, if its error is no more than that of a
-        // factor of 1.05 in the power.
+        // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that
+        // is, if its error is no more than that of a factor of 1.05 in the power.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
         let form_error = halfway.as_ref().map_or(0.0, |h| h.form.error);
         let tame = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
@@ -325,7 +336,8 @@ impl RowSphere {
         form.plus(n.dot(self.at - half_space.at))
     }
 
-    /// n × l, component by component, and −n·l, with n of the radius's length: what [`Ball::around`] has in common for all spheres.
+    /// n × l, component by component, and −n·l, with n of the radius's length: what
+    /// [`Ball::around`] has in common for all spheres.
     pub(crate) fn beside(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
         let moment = lighting.moment.map(|factors| self.known.form(factors));
         (moment, self.known.form(lighting.before))

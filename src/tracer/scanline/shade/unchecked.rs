@@ -165,7 +165,8 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     (samples, in_shadow)
 }
 
-/// (1 − x)ⁿ for x from 0 on, and 0 from 1 on: by squaring 1 − x as 1 − x (2 − x), which keeps what is known of a small x.
+/// (1 − x)ⁿ for x from 0 on, and 0 from 1 on: by squaring 1 − x as 1 − x (2 − x), which keeps what
+/// is known of a small x.
 #[inline(always)]
 fn one_minus_to_the<S: Simd, V: SimdFloat<S, Element: Lane>>(one: V, x: V, exponent: u32) -> V {
     let mut square = x.min(one);

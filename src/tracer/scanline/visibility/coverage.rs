@@ -1,4 +1,5 @@
-//! On which side of each border a column is, and so which solids, shadows and mirror images it meets.
+//! On which side of each border a column is, and so which solids, shadows and mirror images it
+//! meets.
 //!
 //! From crossing to crossing only bits change; what they mean is found out where somebody looks.
 

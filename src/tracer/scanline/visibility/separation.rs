@@ -1,7 +1,8 @@
 //! Which of two solids is in front of the other wherever both are met.
 //!
-//! All eye rays go the same way. Two convex solids that a plane keeps apart are met on either side of it, so every ray that meets
-//! both meets first the one that it is on the side of before it crosses the plane. This needs no depth, and is known for a whole frame.
+//! All eye rays go the same way. Two convex solids that a plane keeps apart are met on either side
+//! of it, so every ray that meets both meets first the one that it is on the side of before it
+//! crosses the plane. This needs no depth, and is known for a whole frame.
 
 use bumpalo::Bump;
 
@@ -57,7 +58,8 @@ impl<'f> Separation<'f> {
     }
 }
 
-/// Whether solid `i` is in front of solid `j`; `None` where that is not known, or depends on the ray.
+/// Whether solid `i` is in front of solid `j`; `None` where that is not known, or depends on the
+/// ray.
 fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
     let toward_j = match (view.spheres.get(i), view.spheres.get(j)) {
         (Some(a), Some(b)) => {

@@ -1,4 +1,5 @@
-//! What a row shows from crossing to crossing. The next row mostly shows the same, only a little further left or right.
+//! What a row shows from crossing to crossing. The next row mostly shows the same, only a little
+//! further left or right.
 
 use crate::tracer::scanline::write::paint::PaintNumber;
 
@@ -28,7 +29,8 @@ impl Visible {
     pub(crate) const UNKNOWN: Visible = Visible::Only(Shown::Unknown);
 }
 
-/// What is seen, or that this has not been found out, in a word: rows of these are compared without a branch.
+/// What is seen, or that this has not been found out, in a word: rows of these are compared without
+/// a branch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packed(u64);
 

@@ -29,7 +29,8 @@ impl RowHistory {
         self.filled.clear();
     }
 
-    /// Fills columns, from the left to the right of the row: calls `write` with those that do not have this colour already.
+    /// Fills columns, from the left to the right of the row: calls `write` with those that do not
+    /// have this colour already.
     pub(crate) fn fill(&mut self, columns: Columns, color: Bits, mut write: impl FnMut(Columns)) {
         match self.next.last_mut() {
             Some(last) if last.columns.1 == columns.0 && last.color == color => {

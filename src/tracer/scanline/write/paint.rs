@@ -96,8 +96,8 @@ pub(crate) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
     }
 }
 
-/// Fills no fewer samples than a vector holds. How many there are is not to be foreseen, so no branch depends on that but one and the end
-/// of the loop: vectors may lie on part of others.
+/// Fills no fewer samples than a vector holds. How many there are is not to be foreseen, so no
+/// branch depends on that but one and the end of the loop: vectors may lie on part of others.
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
@@ -109,7 +109,8 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
         }
         return;
     }
-    // Of all others but the last none crosses from one cache line into the next: that takes twice as long.
+    // Of all others but the last none crosses from one cache line into the next: that takes twice
+    // as long.
     let first = samples.as_ptr().align_offset(4 * width).min(last);
     let one = paint.from::<S, V>(simd, first);
     let two = paint.from::<S, V>(simd, first + width);

@@ -31,7 +31,8 @@ pub(crate) struct Row<'r> {
     pub(crate) decisions: Option<&'r mut [Decision]>,
     /// What the samples are from the frame before, where only what differs is to be written.
     pub(crate) history: Option<&'r mut [RowHistory]>,
-    /// Pixels that are still to be filled. What ends a row mostly begins the next, and they lie side by side.
+    /// Pixels that are still to be filled. What ends a row mostly begins the next, and they lie
+    /// side by side.
     pub(crate) pending: Option<(Range<usize>, &'r Paint)>,
     pub(crate) in_doubt: InDoubt,
 }
