@@ -92,7 +92,7 @@ pub(super) struct RowTracer<'f, P> {
     floor: Option<Floor<'f>>,
     paints: AllPaints<'f>,
     /// How many spheres are shaded.
-    balls: usize,
+    shaded_spheres: usize,
     background: PaintNumber,
     /// The picture of code 2-1, where that is the stage.
     quadrants: Option<[PaintNumber; 4]>,
@@ -127,7 +127,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
             arena,
             edges: Edges::new(arena),
             paints: Paints::new(&color, arena),
-            balls: 0,
+            shaded_spheres: 0,
         };
         let is_quadrants = picture.stage == Stage::Image;
         let background = parts.paints.of(Decision::Background);
@@ -142,7 +142,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
             level,
             edges: parts.edges.all(),
             paints: parts.paints.all(),
-            balls: parts.balls,
+            shaded_spheres: parts.shaded_spheres,
             direct,
             floor,
             background,
@@ -155,7 +155,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
     pub(super) fn begin(&self, scratch: &mut Scratch) {
         scratch.active.begin(&self.edges, self.grid);
         scratch.plan.clear();
-        scratch.shade.cache.begin(self.balls);
+        scratch.shade.cache.begin(self.shaded_spheres);
     }
 
     /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
@@ -260,11 +260,11 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         match shows {
             Shown::Paint(paint) => row.fill(columns, &self.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
-                if let Body::Sphere(ball) = &self.solids(mirrored).solids[solid as usize].body {
-                    let paint = &self.paints[ball.in_shadow];
+                if let Body::Sphere(shaded) = &self.solids(mirrored).solids[solid as usize].body {
+                    let paint = &self.paints[shaded.in_shadow];
                     let Shade { cache, shading } = shade;
-                    let chord = cache.of(ball, row.number, self.level, self.grid);
-                    row.shade(columns, ball, &chord, paint, shading);
+                    let chord = cache.of(shaded, row.number, self.level, self.grid);
+                    row.shade(columns, shaded, &chord, paint, shading);
                     if !shading.doubts.is_empty() {
                         row.ask(shading.doubts.drain(..), self.pixels);
                     }

@@ -150,7 +150,7 @@ struct Case<'c> {
     view: &'c View<'c, DoubleDouble>,
     sphere: &'c Sphere<DoubleDouble>,
     color: Vector<DoubleDouble>,
-    ball: RowSphere,
+    row_sphere: RowSphere,
     grid: Grid,
     /// Another sphere's centre, and the forms that tell whether that is between a pixel and the
     /// light.
@@ -161,30 +161,38 @@ struct Case<'c> {
 impl Case<'_> {
     #[inline(always)]
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
-        let ball = &self.ball;
-        let m = ball.off.at(self.grid.place(row));
-        let light = along(simd, &ball.light, m);
+        let row_sphere = &self.row_sphere;
+        let m = row_sphere.off.at(self.grid.place(row));
+        let light = along(simd, &row_sphere.light, m);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
         let mut cache = BandSpans::NONE;
-        cache.find(simd, ball, below, self.grid);
+        cache.find(simd, row_sphere, below, self.grid);
         let chord = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.grid.place(first);
-            let hits = hits(simd, ball, m, x);
+            let hits = hits(simd, row_sphere, m, x);
             let facing = value::<S>(&light, hits.q, hits.s);
-            let [deep, shallow] = ball
-                .errors
-                .map(|error| lit(simd, ball, m, x, facing, &ambient(simd, ball, error), true));
+            let [deep, shallow] = row_sphere.errors.map(|error| {
+                lit(
+                    simd,
+                    row_sphere,
+                    m,
+                    x,
+                    facing,
+                    &ambient(simd, row_sphere, error),
+                    true,
+                )
+            });
             let forms = self
                 .forms
                 .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
-                let squared = ball.squared_radius - m * m - q * q;
-                if squared < ball.least[1] {
+                let squared = row_sphere.squared_radius - m * m - q * q;
+                if squared < row_sphere.least[1] {
                     continue;
                 }
-                let [lower, upper] = if squared < ball.least[0] {
+                let [lower, upper] = if squared < row_sphere.least[0] {
                     shallow
                 } else {
                     deep
@@ -196,14 +204,14 @@ impl Case<'_> {
                 let computed = facing.as_slice()[lane];
                 found
                     .light
-                    .note(terms.normal_light, computed, ball.light.error);
+                    .note(terms.normal_light, computed, row_sphere.light.error);
 
                 let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
                 let facing = terms.normal_light.to_f64();
                 let column = first + lane as u32;
                 found
                     .cache
-                    .note(&chord, column, facing, halfway, ball.highlight);
+                    .note(&chord, column, facing, halfway, row_sphere.highlight);
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);
@@ -247,17 +255,17 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
         let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
         let color = known.0.solid_color(index) * known.2;
         let lighting = Lighting::new(&view.shading);
-        let ball = RowSphere::new(sphere, &outline, &lighting, color, true);
+        let row_sphere = RowSphere::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
         let to_light = &view.shading.to_light;
-        let beside = ball.beside(&lighting);
-        let ([x, y, z], before) = ball.around(view.spheres[other].center, to_light, &beside);
+        let beside = row_sphere.beside(&lighting);
+        let ([x, y, z], before) = row_sphere.around(view.spheres[other].center, to_light, &beside);
         let case = Case {
             picture: truth.0,
             view: true_view,
             sphere: &true_view.spheres[index],
             color: truth.0.solid_color(index) * truth.2,
-            ball,
+            row_sphere,
             grid,
             other: true_view.spheres[other].center,
             forms: [x, y, z, before],

@@ -12,5 +12,5 @@ pub(crate) struct Builder<'f, 'c> {
     pub(crate) arena: &'f Bump,
     pub(crate) edges: Edges<'f>,
     pub(crate) paints: Paints<'f, 'c>,
-    pub(crate) balls: usize,
+    pub(crate) shaded_spheres: usize,
 }

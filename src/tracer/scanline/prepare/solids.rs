@@ -157,17 +157,17 @@ impl<'f> Solids<'f> {
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
-                    let ball = RowSphere::new(sphere, &ellipse, &lighting, own, shadows);
+                    let row_sphere = RowSphere::new(sphere, &ellipse, &lighting, own, shadows);
                     let casters = if shadows {
                         let casters = &facts.casters[index];
-                        casters_on(&ball, index, view, &lighting, casters, arena)
+                        casters_on(&row_sphere, index, view, &lighting, casters, arena)
                     } else {
                         &[]
                     };
-                    parts.balls += 1;
+                    parts.shaded_spheres += 1;
                     Body::Sphere(arena.alloc(ShadedSphere {
-                        number: parts.balls - 1,
-                        ball,
+                        number: parts.shaded_spheres - 1,
+                        sphere: row_sphere,
                         casters,
                         lit: decision(index, None, false),
                         in_shadow: paint(shadows),
@@ -414,7 +414,7 @@ pub(crate) fn shadows_on<'f>(
 
 /// What may shade the pixels of a sphere.
 fn casters_on<'f>(
-    ball: &RowSphere,
+    row_sphere: &RowSphere,
     index: usize,
     view: &View<'_, Bounded>,
     lighting: &Lighting,
@@ -423,14 +423,14 @@ fn casters_on<'f>(
 ) -> &'f [Caster<'f>] {
     let to_light = view.shading.to_light;
     let own = view.spheres[index].support;
-    let beside = LazyCell::new(|| ball.beside(lighting));
+    let beside = LazyCell::new(|| row_sphere.beside(lighting));
     let casters = casters.iter().filter_map(|&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
             // A ray leaves its own sphere, also where that is listed twice.
             Some(sphere) if sphere.support == own => None,
             Some(sphere) => {
-                let (moment, before) = ball.around(sphere.center, &to_light, &beside);
+                let (moment, before) = row_sphere.around(sphere.center, &to_light, &beside);
                 let reach = to_light.squared_length * sphere.radius.squared();
                 Some(Caster::Sphere(
                     arena.alloc(ShadowCylinder::new(before, moment, reach)),
@@ -439,7 +439,7 @@ fn casters_on<'f>(
             None => {
                 let t = &view.tetrahedra[caster - view.spheres.len()];
                 let ahead = t.solid.ahead(&t.from_light);
-                let forms = ahead.map(|half_space| ball.inside(&half_space, lighting));
+                let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }

@@ -13,7 +13,7 @@ pub(crate) enum Caster<'f> {
     Sphere(&'f ShadowCylinder),
 }
 
-/// Points in the shadow of a ball.
+/// The shadow of a sphere: a cylinder that begins at it, along the way from the light.
 pub(crate) struct ShadowCylinder {
     pub(crate) before: LinearForm,
     /// The components of a vector, of which the squared length is at most `reach`; a bound on the
@@ -28,7 +28,7 @@ impl Caster<'_> {
     pub(crate) fn misses(&self, stretch: &Stretch) -> bool {
         match self {
             Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative_along(stretch)),
-            Caster::Sphere(passing) => {
+            Caster::Sphere(cylinder) => {
                 let least_square = |form: &LinearForm| {
                     let (low, high) = form.along(stretch);
                     if low <= 0.0 && high >= 0.0 {
@@ -37,9 +37,9 @@ impl Caster<'_> {
                         (low * low).min(high * high)
                     }
                 };
-                let [x, y, z] = &passing.moment;
-                let most = passing.reach - (least_square(x) + least_square(y) + least_square(z));
-                most < -passing.error || passing.before.is_negative_along(stretch)
+                let [x, y, z] = &cylinder.moment;
+                let most = cylinder.reach - (least_square(x) + least_square(y) + least_square(z));
+                most < -cylinder.error || cylinder.before.is_negative_along(stretch)
             }
         }
     }

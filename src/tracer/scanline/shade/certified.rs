@@ -106,15 +106,15 @@ pub(crate) struct Along<V> {
 /// Shades a run of pixels that see a sphere.
 #[inline(always)]
 pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
-    let ball = &shaded.ball;
+    let sphere = &shaded.sphere;
     let width = S::f32s::LEN;
-    let m = ball.off.at(run.y);
-    let light = along(simd, &ball.light, m);
+    let m = sphere.off.at(run.y);
+    let light = along(simd, &sphere.light, m);
     let asks = !run.is_facing || !run.shading.in_reach.is_empty();
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
     let (mut done, mut first) = (0, 0);
-    let mut lights = both_lights(simd, ball, &light, m, run, first);
+    let mut lights = both_lights(simd, sphere, &light, m, run, first);
     while done < count {
         // The last vector may lie on part of the one before it.
         let next = (first + width).min(last);
@@ -122,7 +122,7 @@ pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'
         // own.
         let [low, high] = lights;
         if next > first {
-            lights = both_lights(simd, ball, &light, m, run, next);
+            lights = both_lights(simd, sphere, &light, m, run, next);
         }
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
@@ -141,11 +141,12 @@ pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'
             fill(simd, samples, run.in_shadow);
         } else {
             let is_deep = column >= run.deep.0 && end <= run.deep.1;
-            let error = ball.errors[usize::from(!is_deep)];
+            let error = sphere.errors[usize::from(!is_deep)];
             let is_bright = column < run.bright.1 && end > run.bright.0;
-            let ambient = ambient(simd, ball, error);
-            let [low_lower, low_upper] = lit(simd, ball, m, places[0], low, &ambient, is_bright);
-            let [high_lower, high_upper] = lit(simd, ball, m, places[1], high, &ambient, is_bright);
+            let ambient = ambient(simd, sphere, error);
+            let [low_lower, low_upper] = lit(simd, sphere, m, places[0], low, &ambient, is_bright);
+            let [high_lower, high_upper] =
+                lit(simd, sphere, m, places[1], high, &ambient, is_bright);
             let lower = narrow::<S>(low_lower, high_lower);
             // An error is not −0, and so is no sum with one.
             let upper = narrow::<S>(low_upper, high_upper);
@@ -180,14 +181,14 @@ pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'
 #[inline(always)]
 fn both_lights<S: Simd>(
     simd: S,
-    ball: &RowSphere,
+    sphere: &RowSphere,
     light: &Along<S::f64s>,
     m: f64,
     run: &Run<'_>,
     first: usize,
 ) -> [S::f64s; 2] {
     let [low, high] = run.places::<S>(first);
-    let (low, high) = (hits(simd, ball, m, low), hits(simd, ball, m, high));
+    let (low, high) = (hits(simd, sphere, m, low), hits(simd, sphere, m, high));
     [
         value::<S>(light, low.q, low.s),
         value::<S>(light, high.q, high.s),
@@ -277,9 +278,9 @@ pub(crate) fn value<S: Simd>(form: &Along<S::f64s>, q: S::f64s, s: S::f64s) -> S
 
 /// The hits from X = `x` on.
 #[inline(always)]
-pub(crate) fn hits<S: Simd>(simd: S, ball: &RowSphere, m: f64, x: f64) -> Hits<S::f64s> {
-    let q = places::<S>(simd, 0) + x - ball.center;
-    let squared = S::f64s::splat(simd, ball.squared_radius - m * m);
+pub(crate) fn hits<S: Simd>(simd: S, sphere: &RowSphere, m: f64, x: f64) -> Hits<S::f64s> {
+    let q = places::<S>(simd, 0) + x - sphere.center;
+    let squared = S::f64s::splat(simd, sphere.squared_radius - m * m);
     let s = q.mul_add(-q, squared).sqrt();
     Hits { q, s }
 }
@@ -301,12 +302,12 @@ fn shadowed<S: Simd>(
         let mut dark = S::mask64s::splat(simd, false);
         let mut known = S::mask64s::splat(simd, true);
         if !run.is_facing {
-            let error = shaded.ball.light.error;
+            let error = shaded.sphere.light.error;
             dark = lights[i].simd_lt(-error);
             known = dark | lights[i].simd_gt(error);
         }
         if !run.shading.in_reach.is_empty() {
-            let hits = hits(simd, &shaded.ball, m, places[i]);
+            let hits = hits(simd, &shaded.sphere, m, places[i]);
             for &caster in &run.shading.in_reach {
                 let (inside, outside) = behind(simd, &shaded.casters[caster], m, &hits);
                 dark |= inside;
@@ -322,8 +323,8 @@ fn shadowed<S: Simd>(
 /// The ambient part of samples as they lie in memory, less and more than it is by a bound on the
 /// errors of all but the highlight.
 #[inline(always)]
-pub(crate) fn ambient<S: Simd>(simd: S, ball: &RowSphere, error: f64) -> [[S::f64s; 3]; 2] {
-    let [red, green, blue] = of_cycle(simd, &ball.color.ambient);
+pub(crate) fn ambient<S: Simd>(simd: S, sphere: &RowSphere, error: f64) -> [[S::f64s; 3]; 2] {
+    let [red, green, blue] = of_cycle(simd, &sphere.color.ambient);
     [
         [red - error, green - error, blue - error],
         [red + error, green + error, blue + error],
@@ -335,7 +336,7 @@ pub(crate) fn ambient<S: Simd>(simd: S, ball: &RowSphere, error: f64) -> [[S::f6
 #[inline(always)]
 pub(crate) fn lit<S: Simd>(
     simd: S,
-    ball: &RowSphere,
+    sphere: &RowSphere,
     m: f64,
     x: f64,
     light: S::f64s,
@@ -344,18 +345,18 @@ pub(crate) fn lit<S: Simd>(
 ) -> [[S::f64s; 3]; 2] {
     let [mut lower, mut upper] = *ambient;
     let light = spread(light.max(0.0));
-    let diffuse = of_cycle(simd, &ball.color.diffuse);
+    let diffuse = of_cycle(simd, &sphere.color.diffuse);
     for i in 0..3 {
         lower[i] = light[i].mul_add(diffuse[i], lower[i]);
         upper[i] = light[i].mul_add(diffuse[i], upper[i]);
     }
-    if let Some(halfway) = ball.halfway.as_ref().filter(|_| is_bright) {
-        let hits = hits(simd, ball, m, x);
-        let (power, error) = highlight(simd, ball, halfway, m, &hits);
+    if let Some(halfway) = sphere.halfway.as_ref().filter(|_| is_bright) {
+        let hits = hits(simd, sphere, m, x);
+        let (power, error) = highlight(simd, sphere, halfway, m, &hits);
         // No coefficient is negative.
         let least = spread(power - error);
         let most = spread(power + error);
-        let specular = of_cycle(simd, &ball.color.specular);
+        let specular = of_cycle(simd, &sphere.color.specular);
         for i in 0..3 {
             lower[i] = least[i].mul_add(specular[i], lower[i]);
             upper[i] = most[i].mul_add(specular[i], upper[i]);
@@ -368,7 +369,7 @@ pub(crate) fn lit<S: Simd>(
 #[inline(always)]
 fn highlight<S: Simd>(
     simd: S,
-    ball: &RowSphere,
+    sphere: &RowSphere,
     halfway: &Halfway,
     m: f64,
     hits: &Hits<S::f64s>,
@@ -378,9 +379,9 @@ fn highlight<S: Simd>(
     let squared = across * across + out * out + off * off;
     // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight is
     // bright.
-    let scale = 0.5 * ball.inverse_radius * ball.inverse_radius;
-    let missing = (squared * scale).min(1.0 - ball.highlight);
-    let power = power(simd, -missing + 1.0, ball.exponent);
+    let scale = 0.5 * sphere.inverse_radius * sphere.inverse_radius;
+    let missing = (squared * scale).min(1.0 - sphere.highlight);
+    let power = power(simd, -missing + 1.0, sphere.exponent);
     let [constant, slope] = halfway.errors;
     // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for
     // max(X, x) instead of x.
@@ -425,13 +426,13 @@ fn behind<S: Simd>(
             }
             (inside, outside)
         }
-        Caster::Sphere(passing) => {
+        Caster::Sphere(cylinder) => {
             let ShadowCylinder {
                 before,
                 moment,
                 reach,
                 error,
-            } = *passing;
+            } = *cylinder;
             let ahead = value::<S>(&along(simd, before, m), q, s);
             let x = value::<S>(&along(simd, &moment[0], m), q, s);
             let y = value::<S>(&along(simd, &moment[1], m), q, s);

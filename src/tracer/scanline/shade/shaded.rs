@@ -9,7 +9,7 @@ use crate::tracer::scanline::write::paint::PaintNumber;
 pub(crate) struct ShadedSphere<'f> {
     /// Its number among those of the frame.
     pub(crate) number: usize,
-    pub(crate) ball: RowSphere,
+    pub(crate) sphere: RowSphere,
     /// What may throw a shadow on it.
     pub(crate) casters: &'f [Caster<'f>],
     /// Its decision in the light.

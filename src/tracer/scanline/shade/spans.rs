@@ -96,13 +96,13 @@ impl SpanCache {
         level: Level,
         grid: Grid,
     ) -> SphereSpans {
-        let (number, ball) = (shaded.number, &shaded.ball);
+        let (number, sphere) = (shaded.number, &shaded.sphere);
         let within = row % ROWS as u32;
         let first = row - within;
         if self.first[number] != Some(first) {
             self.first[number] = Some(first);
             let cache = &mut self.cache[number];
-            dispatch!(level, simd => cache.find(simd, ball, first, grid));
+            dispatch!(level, simd => cache.find(simd, sphere, first, grid));
             cache.shaders = cache.shaders_of(shaded, first, grid);
         }
         self.cache[number].row(within as usize)
@@ -154,7 +154,7 @@ impl BandSpans {
         let end = to[rows].iter().fold(0, |a, &b| a.max(b));
         let columns = (grid.place(begin), grid.place(end - 1));
         let row = |row: usize| grid.place(first + row as u32);
-        let stretch = shaded.ball.stretch(columns, (row(low), row(high)));
+        let stretch = shaded.sphere.stretch(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
         let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
         near.fold(0, |all, (number, _)| all | bit_of(number))
@@ -162,34 +162,34 @@ impl BandSpans {
 
     /// Finds all but the casters, of the rows from `first` on.
     #[inline(always)]
-    pub(crate) fn find<S: Simd>(&mut self, simd: S, ball: &RowSphere, first: u32, grid: Grid) {
-        self.facing.is_concave = ball.light.is_concave == Some(true);
+    pub(crate) fn find<S: Simd>(&mut self, simd: S, sphere: &RowSphere, first: u32, grid: Grid) {
+        self.facing.is_concave = sphere.light.is_concave == Some(true);
         self.facing.settled = 0;
         self.bright = BandSpans::NONE.bright;
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, lane) + grid.place(first);
-            let m = ball.off.of_rows::<S>(y);
+            let m = sphere.off.of_rows::<S>(y);
             let rows = InRows {
                 simd,
-                ball,
+                sphere,
                 grid,
                 m,
-                squared: -(m * m) + ball.squared_radius,
+                squared: -(m * m) + sphere.squared_radius,
             };
-            let [least_deep, least] = ball.least;
+            let [least_deep, least] = sphere.least;
             let (known, deep) = (rows.chord(least), rows.chord(least_deep));
             put::<S>(known, &mut self.known, lane);
             put::<S>(deep, &mut self.deep, lane);
-            if ball.shadows {
-                let (inside, settled) = rows.arc(&ball.light, 0.0, known);
+            if sphere.shadows {
+                let (inside, settled) = rows.arc(&sphere.light, 0.0, known);
                 put::<S>(inside, &mut self.facing.inside, lane);
                 self.facing.settled |= settled.to_bitmask() << lane;
             }
-            if let Some(halfway) = &ball.halfway {
+            if let Some(halfway) = &sphere.halfway {
                 // |n − h| is no less than the part of it along m.
                 let is_near = (m - halfway.at[1]).abs().simd_le(halfway.reach);
                 if is_near.any_true() {
-                    let (inside, settled) = rows.arc(&halfway.form, ball.highlight, known);
+                    let (inside, settled) = rows.arc(&halfway.form, sphere.highlight, known);
                     let mut bright = known;
                     if halfway.form.is_concave == Some(true) {
                         bright = select::<S>(settled, inside, known);
@@ -206,7 +206,7 @@ impl BandSpans {
 /// A sphere in as many rows as there are lanes.
 struct InRows<'b, S: Simd> {
     simd: S,
-    ball: &'b RowSphere,
+    sphere: &'b RowSphere,
     grid: Grid,
     m: S::f64s,
     /// R² − m².
@@ -233,7 +233,7 @@ impl<S: Simd> InRows<'_, S> {
     /// q in a column of each row.
     #[inline(always)]
     fn across(&self, column: S::f64s) -> S::f64s {
-        (column - self.grid.half) * 3.0 - self.ball.center
+        (column - self.grid.half) * 3.0 - self.sphere.center
     }
 
     /// The columns in which s² is at least `least`, but for some at their ends.
@@ -241,7 +241,7 @@ impl<S: Simd> InRows<'_, S> {
     fn chord(&self, least: f64) -> Ends<S::f64s> {
         let (zero, size) = (S::f64s::splat(self.simd, 0.0), f64::from(self.grid.size));
         let half = (self.squared - least).max(zero).sqrt();
-        let middle = S::f64s::splat(self.simd, self.ball.center);
+        let middle = S::f64s::splat(self.simd, self.sphere.center);
         let from = (in_columns::<S>(self.grid, middle - half) + NUDGE).ceil();
         let to = (in_columns::<S>(self.grid, middle + half) - NUDGE).floor() + 1.0;
         let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
@@ -296,14 +296,14 @@ impl<S: Simd> InRows<'_, S> {
         // Where r + a q > 0, F is 0 with the other sign of s, and positive at the end of the chord.
         let from_end = !has_roots | (low * a + r).simd_gt(zero);
         let to_end = !has_roots | (high * a + r).simd_gt(zero);
-        let (low, high) = (low + self.ball.center, high + self.ball.center);
+        let (low, high) = (low + self.sphere.center, high + self.sphere.center);
         let from = in_columns::<S>(self.grid, low).ceil().max(first);
         let to = (in_columns::<S>(self.grid, high).floor() + one).min(end);
         let from = from_end.select(first, from);
         let to = to_end.select(end, to);
         let is_none = (!has_roots & r.simd_lt(zero)) | from.simd_ge(to);
         // It is most at q/s = a/o.
-        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.ball.center;
+        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.sphere.center;
         let top = in_columns::<S>(self.grid, top).floor();
         let top = top.min(last - one).max(first);
         // The last column before those, the first and the last of them, and the next; or of none,

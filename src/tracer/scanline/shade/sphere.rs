@@ -337,7 +337,7 @@ impl RowSphere {
     }
 
     /// n × l, component by component, and −n·l, with n of the radius's length: what
-    /// [`Ball::around`] has in common for all spheres.
+    /// [`RowSphere::around`] has in common for all spheres.
     pub(crate) fn beside(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
         let moment = lighting.moment.map(|factors| self.known.form(factors));
         (moment, self.known.form(lighting.before))

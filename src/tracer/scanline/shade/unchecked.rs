@@ -30,8 +30,8 @@ impl Lane for f64 {
 /// Shades a run of pixels that see a sphere, in f32.
 #[inline(always)]
 pub(crate) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
-    let color = color::<S, S::f32s>(simd, &shaded.ball);
-    let m = shaded.ball.off.at(run.y);
+    let color = color::<S, S::f32s>(simd, &shaded.sphere);
+    let m = shaded.sphere.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
@@ -44,9 +44,9 @@ pub(crate) fn shade_in_single<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: 
 /// The same in f64, rounded once at the end.
 #[inline(always)]
 pub(crate) fn shade_in_double<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
-    let color = color::<S, S::f64s>(simd, &shaded.ball);
+    let color = color::<S, S::f64s>(simd, &shaded.sphere);
     let half = S::f64s::LEN;
-    let m = shaded.ball.off.at(run.y);
+    let m = shaded.sphere.off.at(run.y);
     let count = run.samples.len() / 3;
     let mut first = 0;
     while first < count {
@@ -85,13 +85,13 @@ fn write<S: Simd>(
 #[inline(always)]
 fn color<S: Simd, V: SimdFloat<S, Element: Lane>>(
     simd: S,
-    ball: &RowSphere,
+    sphere: &RowSphere,
 ) -> Coefficients<[V; 3]> {
     let Coefficients {
         ambient,
         diffuse,
         specular,
-    } = &ball.color;
+    } = &sphere.color;
     Coefficients {
         ambient: cycle(simd, ambient),
         diffuse: cycle(simd, diffuse),
@@ -120,17 +120,17 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     m: f64,
     x: f64,
 ) -> ([V; 3], V::Mask) {
-    let ball = &shaded.ball;
+    let sphere = &shaded.sphere;
     let zero = V::splat(simd, V::Element::of(0.0));
     let one = V::splat(simd, V::Element::of(1.0));
     // X − c_x as f64 has it: it must not depend on where a vector begins.
     let mut q = zero;
     for (i, q) in q.as_mut_slice().iter_mut().enumerate() {
-        *q = V::Element::of(x + 3.0 * i as f64 - ball.center);
+        *q = V::Element::of(x + 3.0 * i as f64 - sphere.center);
     }
-    let squared = V::splat(simd, V::Element::of(ball.squared_radius - m * m)) - q * q;
+    let squared = V::splat(simd, V::Element::of(sphere.squared_radius - m * m)) - q * q;
     let s = squared.max(zero).sqrt();
-    let light = value::<S, V>(simd, &ball.light, m, q, s);
+    let light = value::<S, V>(simd, &sphere.light, m, q, s);
     let mut in_shadow = V::Mask::splat(simd, false);
     if !run.is_facing {
         in_shadow = light.simd_le(zero);
@@ -143,19 +143,19 @@ fn lit<S: Simd, V: SimdFloat<S, Element: Lane>>(
     for i in 0..3 {
         samples[i] = light[i] * color.diffuse[i] + color.ambient[i];
     }
-    if let Some(halfway) = &ball.halfway {
+    if let Some(halfway) = &sphere.halfway {
         let h = &halfway.form;
         let x = value::<S, V>(simd, h, m, q, s);
-        let bright = x.simd_gt(V::splat(simd, V::Element::of(ball.highlight)));
+        let bright = x.simd_gt(V::splat(simd, V::Element::of(sphere.highlight)));
         if bright.any_true() {
             // |n − h|²/2 = 1 − n·h, in the axes of q, m and s, which are of length 1.
-            let inverse = ball.inverse_radius;
+            let inverse = sphere.inverse_radius;
             let [h_across, h_off, h_out] = h.vector();
             let across = q * V::Element::of(inverse) - V::Element::of(h_across / inverse);
             let off = m * inverse - h_off / inverse;
             let out = s * V::Element::of(inverse) - V::Element::of(h_out / inverse);
             let squared = across * across + out * out + V::Element::of(off * off);
-            let power = one_minus_to_the(one, squared * V::Element::of(0.5), ball.exponent);
+            let power = one_minus_to_the(one, squared * V::Element::of(0.5), sphere.exponent);
             let power = spread(bright.select(power, zero));
             for i in 0..3 {
                 samples[i] += power[i] * color.specular[i];
@@ -219,12 +219,12 @@ fn shadowed<S: Simd, V: SimdFloat<S, Element: Lane>>(
                 inside &= value::<S, V>(simd, form, m, q, s).simd_ge(zero);
             }
         }
-        Caster::Sphere(passing) => {
-            let x = value::<S, V>(simd, &passing.moment[0], m, q, s);
-            let y = value::<S, V>(simd, &passing.moment[1], m, q, s);
-            let z = value::<S, V>(simd, &passing.moment[2], m, q, s);
-            let reach = V::splat(simd, V::Element::of(passing.reach));
-            inside &= value::<S, V>(simd, &passing.before, m, q, s).simd_gt(zero);
+        Caster::Sphere(cylinder) => {
+            let x = value::<S, V>(simd, &cylinder.moment[0], m, q, s);
+            let y = value::<S, V>(simd, &cylinder.moment[1], m, q, s);
+            let z = value::<S, V>(simd, &cylinder.moment[2], m, q, s);
+            let reach = V::splat(simd, V::Element::of(cylinder.reach));
+            inside &= value::<S, V>(simd, &cylinder.before, m, q, s).simd_gt(zero);
             inside &= (reach - (x * x + y * y + z * z)).simd_ge(zero);
         }
     }

@@ -107,7 +107,7 @@ impl<'r> Row<'r> {
         shading.doubts.extend(columns.0..known.0);
         shading.doubts.extend(known.1..columns.1);
         let facing = match chord.facing {
-            _ if !shaded.ball.shadows => Some((known, true)),
+            _ if !shaded.sphere.shadows => Some((known, true)),
             facing => facing,
         };
         let mut shade = |row: &mut Self, columns, is_facing| {
@@ -150,7 +150,7 @@ impl<'r> Row<'r> {
         if chord.shaders != 0 {
             let place = |column| self.grid.place(column);
             let ends = (place(columns.0), place(columns.1 - 1));
-            let stretch = shaded.ball.stretch(ends, (self.y, self.y));
+            let stretch = shaded.sphere.stretch(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
                 chord.shaders & bit_of(*number) != 0 && !caster.misses(&stretch)
