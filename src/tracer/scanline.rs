@@ -51,6 +51,8 @@ mod prepare;
 mod rounding;
 mod shade;
 mod span;
+#[cfg(test)]
+mod tests;
 mod visibility;
 mod write;
 

@@ -33,7 +33,7 @@ use super::panel;
 use super::rect::Rect;
 use super::zoom::Zoom;
 use growth::Growth;
-use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
+use opengl::{Failure, config, display, fitting, functions};
 
 /// The window and everything that draws in it.
 pub(super) struct View {
@@ -319,11 +319,6 @@ impl View {
             return None;
         }
         self.examined = true;
-        // What shows fewer bits shows other bytes.
-        if self.config.color_buffer_type() != Some(EIGHT_BITS) {
-            return None;
-        }
-        drawing.screen.draw(surface, placement);
         drawing.screen.first_difference(surface, placement, image)
     }
 

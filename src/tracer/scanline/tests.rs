@@ -1,0 +1,163 @@
+//! The stages before shading, each against what it stands for: the cached spans against spans that
+//! are computed anew, and what a span shows against the pixels' own definition.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use fearless_simd::Level;
+
+use super::visibility::visible::{DepthTests, Shown, Visible};
+use super::{Columns, Precision, RowTracer, Scratch};
+use crate::scene::Scene;
+use crate::stage::Stage;
+use crate::tracer::arena::Arena;
+use crate::tracer::decision::Decision;
+use crate::tracer::ladder::{Ladder, Lines, Pixels as _, Rung};
+
+const SCENES: [&str; 6] = [
+    "",
+    include_str!("../../../tests/scenes/crossing_spheres.toml"),
+    include_str!("../../../tests/scenes/crossing_tetrahedra.toml"),
+    include_str!("../../../tests/scenes/crowd.toml"),
+    include_str!("../../../tests/scenes/light_from_below.toml"),
+    include_str!("../../../tests/scenes/spheres_in_the_floor.toml"),
+];
+
+/// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
+fn each_frame(size: u32, check: impl Fn(&str, &RowTracer<'_, Ladder<'_>>)) {
+    for text in SCENES {
+        let scene = match text {
+            "" => Scene::builtin(),
+            text => Scene::from_toml(text).unwrap(),
+        };
+        for (stage, alpha) in [
+            (Stage::Shadow, 0.0),
+            (Stage::Reflection, 0.0),
+            (Stage::Reflection, 0.3),
+            (Stage::Reflection, 2.1),
+        ] {
+            let arena = Arena::default();
+            let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Double, &arena);
+            let tracer = RowTracer::new(&ladder, Precision::Bounded, Level::baseline(), &arena);
+            let name = text.lines().next().unwrap_or("built-in");
+            check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
+        }
+    }
+}
+
+/// The spans of a row, from the left: where each ends, and what is visible there.
+fn spans<P: Lines>(
+    tracer: &RowTracer<'_, P>,
+    row: u32,
+    scratch: &mut Scratch,
+) -> Vec<(u32, Visible)> {
+    let Scratch { active, plan, .. } = scratch;
+    active.enter(row, &tracer.edges, tracer.level, tracer.grid, |coverage| {
+        tracer.seen(coverage, plan)
+    });
+    let mut spans: Vec<(u32, Visible)> = Vec::new();
+    let mut from = 0;
+    for part in 0..active.len() {
+        let (to, visible) = active.part(part, row);
+        if to > from {
+            spans.push((to, visible));
+            from = to;
+        }
+    }
+    spans
+}
+
+/// What is visible, in words that do not depend on how tests of depth are numbered.
+fn words(visible: Visible, tests: &DepthTests) -> String {
+    let shown = |shown: Shown| match shown {
+        Shown::Paint(paint) => format!("paint {}", paint.0),
+        Shown::Sphere { mirrored, solid } => format!("sphere {solid} {mirrored}"),
+        Shown::Unknown => "unknown".to_owned(),
+    };
+    match visible {
+        Visible::Only(only) => shown(only),
+        Visible::First(number) => {
+            let test = tests.test(number);
+            let solids = test.solids.iter();
+            let solids: Vec<String> = solids
+                .map(|&(solid, shows)| format!("{solid}: {}", shown(shows)))
+                .collect();
+            let rest = words(test.rest, tests);
+            format!("{} {} {solids:?} or {rest}", test.mirrored, test.surface)
+        }
+    }
+}
+
+#[test]
+fn spans_kept_from_row_to_row_are_spans_computed_anew() {
+    let size = 61;
+    each_frame(size, |name, tracer| {
+        let mut kept = Scratch::default();
+        tracer.begin(&mut kept);
+        // Not only from the bottom to the top: threads take bands of rows in any order.
+        let rows = (0..size).chain((0..size).rev()).chain((0..size).step_by(7));
+        for row in rows {
+            let mut anew = Scratch::default();
+            tracer.begin(&mut anew);
+            let describe = |scratch: &mut Scratch| {
+                let spans = spans(tracer, row, scratch);
+                let spans = spans.into_iter();
+                spans
+                    .map(|(to, visible)| (to, words(visible, &scratch.plan)))
+                    .collect::<Vec<_>>()
+            };
+            // Neighbours that show the same may be one span in one of them, and two in the other.
+            let pixels = |spans: Vec<(u32, String)>| {
+                let mut pixels = Vec::new();
+                for (to, words) in spans {
+                    pixels.resize(to as usize, words);
+                }
+                pixels
+            };
+            let (kept, anew) = (describe(&mut kept), describe(&mut anew));
+            assert_eq!(pixels(kept), pixels(anew), "{name}, row {row}");
+        }
+    });
+}
+
+#[test]
+fn a_span_shows_what_its_pixels_are_defined_to_show() {
+    let size = 40;
+    each_frame(size, |name, tracer| {
+        let mut scratch = Scratch::default();
+        tracer.begin(&mut scratch);
+        let (mut told, mut asked) = (0, 0);
+        for row in 0..size {
+            let y = tracer.grid.place(row);
+            let mut from = 0;
+            for (to, visible) in spans(tracer, row, &mut scratch) {
+                let mut settled: Vec<(Columns, Shown)> = Vec::new();
+                tracer.settle(&scratch.plan, visible, y, (from, to), &mut settled);
+                for ((first, end), shown) in settled {
+                    for column in first..end {
+                        let ((decision, _), _) = tracer.pixels.pixel(column, row);
+                        let is_right = match (shown, decision) {
+                            (Shown::Unknown, _) => {
+                                asked += 1;
+                                continue;
+                            }
+                            (Shown::Paint(paint), _) => tracer.paints[paint].decision == decision,
+                            (Shown::Sphere { mirrored, solid }, Decision::Solid(seen)) => {
+                                !mirrored && u32::from(seen.solid) == solid
+                            }
+                            (Shown::Sphere { mirrored, solid }, Decision::Mirrored(seen)) => {
+                                mirrored && u32::from(seen.solid) == solid
+                            }
+                            (Shown::Sphere { .. }, _) => false,
+                        };
+                        assert!(is_right, "{name}, ({column}, {row}): {decision:?}");
+                        told += 1;
+                    }
+                }
+                from = to;
+            }
+            assert_eq!(from, size, "{name}, row {row}");
+        }
+        // Spans that tell nothing would pass, too.
+        assert!(told > asked, "{name}: {told} told, {asked} asked");
+    });
+}
