@@ -1,15 +1,14 @@
-//! Whether a driver draws what it is asked to: it may be wrong.
+//! Whether a framebuffer shows what was drawn: a driver may be wrong.
 
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
-use super::offscreen::Framebuffer;
 use super::{Placement, Screen};
 use crate::image::{Image, display_byte};
 use crate::memory;
 
-/// As many pixels are looked at; a whole framebuffer of four times the size would be noticed when a
-/// window is resized.
+/// As many pixels of a framebuffer are looked at; a whole one of four times the size would be
+/// noticed when a window is resized.
 const MOST: u32 = 1 << 20;
 
 /// A pixel of a framebuffer that is not what the picture says.
@@ -24,12 +23,8 @@ pub struct Differs {
 }
 
 impl Screen {
-    /// Draws the picture, which is `image`, as into a window of `surface` pixels, and finds the first
-    /// pixel, of up to a million from the bottom, that is not what it should be.
-    ///
-    /// It is drawn into a framebuffer of its own with 8 bits a colour: the pixels of a window that is
-    /// covered, or is just being resized, are not to be relied on. Where there is no memory for it,
-    /// nothing is looked at. Afterwards the window's framebuffer is bound.
+    /// The first pixel, of up to a million from the bottom of a framebuffer with 8 bits a colour,
+    /// that is not what [`Screen::draw`] of `image` should have left there.
     pub(crate) fn first_difference(
         &self,
         surface: UVec2,
@@ -37,10 +32,25 @@ impl Screen {
         image: &Image,
     ) -> Option<Differs> {
         let size = UVec2::new(surface.x, surface.y.min(MOST / surface.x.max(1)));
-        let bytes = self.drawn(size, placement);
-        // SAFETY: the context is current.
-        unsafe { self.gl.bind_framebuffer(glow::FRAMEBUFFER, None) };
-        let bytes = bytes?;
+        let mut bytes = Vec::new();
+        let length = size.x as usize * size.y as usize * 4;
+        // Without memory nothing is looked at.
+        memory::reserve(&mut bytes, length).ok()?;
+        bytes.resize(length, 0);
+        // SAFETY: the context is current. No buffer is bound, and rows of four bytes a pixel have
+        // no gaps at any alignment, so that the driver writes as many bytes as are there.
+        unsafe {
+            self.gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            self.gl.read_pixels(
+                0,
+                0,
+                size.x as i32,
+                size.y as i32,
+                glow::RGBA,
+                glow::UNSIGNED_BYTE,
+                glow::PixelPackData::Slice(Some(&mut bytes)),
+            );
+        }
         let rows = bytes.chunks_exact(size.x.max(1) as usize * 4);
         rows.zip(0..)
             .flat_map(|(row, y)| {
@@ -57,31 +67,5 @@ impl Screen {
                     shown,
                 })
             })
-    }
-
-    /// Red, green, blue and alpha of each pixel of a framebuffer of this size, as it is drawn.
-    fn drawn(&self, size: UVec2, placement: Placement) -> Option<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let length = size.x as usize * size.y as usize * 4;
-        memory::reserve(&mut bytes, length).ok()?;
-        bytes.resize(length, 0);
-        let framebuffer = Framebuffer::new(self.gl.clone(), size, glow::RGBA8).ok()?;
-        framebuffer.bind();
-        self.draw(size, placement);
-        // SAFETY: the context is current. No buffer is bound, and rows of four bytes a pixel have no
-        // gaps at any alignment, so that the driver writes as many bytes as are there.
-        unsafe {
-            self.gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-            self.gl.read_pixels(
-                0,
-                0,
-                size.x as i32,
-                size.y as i32,
-                glow::RGBA,
-                glow::UNSIGNED_BYTE,
-                glow::PixelPackData::Slice(Some(&mut bytes)),
-            );
-        }
-        Some(bytes)
     }
 }

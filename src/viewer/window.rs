@@ -33,7 +33,10 @@ use super::panel;
 use super::rect::Rect;
 use super::zoom::Zoom;
 use growth::Growth;
-use opengl::{Failure, config, display, fitting, functions};
+use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
+
+/// A driver that shows something else in so many frames in a row is wrong.
+const LOOKS: u32 = 4;
 
 /// The window and everything that draws in it.
 pub(super) struct View {
@@ -50,8 +53,8 @@ pub(super) struct View {
     panel: bool,
     /// What the window was asked to become for the panel.
     growth: Growth,
-    /// It has been looked whether the driver shows what is drawn.
-    examined: bool,
+    /// How often it may still be looked whether the driver shows what is drawn.
+    looks: u32,
 }
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
@@ -124,7 +127,7 @@ impl View {
             zoom: Zoom::default(),
             panel: false,
             growth: Growth::default(),
-            examined: false,
+            looks: LOOKS,
         };
         view.renew()?;
         Ok(view)
@@ -134,7 +137,7 @@ impl View {
     /// after it.
     fn renew(&mut self) -> Result<(), Failure> {
         self.drawing = None;
-        self.examined = false;
+        self.looks = LOOKS;
         self.drawing = Some(Drawing::new(
             &self.config,
             &self.window,
@@ -169,7 +172,7 @@ impl View {
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
         self.growth.came(surface);
-        self.examined = false;
+        self.looks = LOOKS;
         self.change(|view| view.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
@@ -312,14 +315,29 @@ impl View {
 
     /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be:
     /// once in each size of the window.
+    ///
+    /// A window that is just being resized on the display may hold anything for a frame. So what
+    /// differs is looked at again in the next frames, which are asked for, before it is believed.
     pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
         let drawing = self.drawing.as_ref()?;
-        if self.examined || self.is_empty() {
+        // What shows fewer bits shows other bytes.
+        let has_eight_bits = self.config.color_buffer_type() == Some(EIGHT_BITS);
+        if self.looks == 0 || self.is_empty() || !has_eight_bits {
             return None;
         }
-        self.examined = true;
-        drawing.screen.first_difference(surface, placement, image)
+        drawing.screen.draw(surface, placement);
+        let differs = drawing.screen.first_difference(surface, placement, image);
+        self.looks = match differs {
+            None => 0,
+            Some(_) => self.looks - 1,
+        };
+        if self.looks > 0 {
+            self.window.request_redraw();
+            return None;
+        }
+        let size = self.window.inner_size();
+        differs.filter(|_| UVec2::new(size.width, size.height) == surface)
     }
 
     /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the

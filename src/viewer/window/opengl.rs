@@ -66,6 +66,13 @@ fn preference(
     DisplayApiPreference::Cgl
 }
 
+/// What a display of today shows of a colour.
+pub(super) const EIGHT_BITS: ColorBufferType = ColorBufferType::Rgb {
+    r_size: 8,
+    g_size: 8,
+    b_size: 8,
+};
+
 /// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop
 /// could shine.
 pub(super) fn config(display: &Display) -> Result<Config, Failure> {
@@ -76,15 +83,10 @@ pub(super) fn config(display: &Display) -> Result<Config, Failure> {
         .build();
     // SAFETY: the template names no native window that could have gone.
     let configs = unsafe { display.find_configs(template) }?;
-    let eight_bits = ColorBufferType::Rgb {
-        r_size: 8,
-        g_size: 8,
-        b_size: 8,
-    };
     configs
         .min_by_key(|config| {
             (
-                config.color_buffer_type() != Some(eight_bits),
+                config.color_buffer_type() != Some(EIGHT_BITS),
                 config.supports_transparency() == Some(true),
                 config.alpha_size(),
                 config.num_samples(),
