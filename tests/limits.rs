@@ -120,6 +120,14 @@ fn a_driver_that_could_not_have_its_memory_is_not_asked() {
 /// A user's threads are limited for all but the administrator.
 #[test]
 fn a_driver_that_could_not_have_its_threads_is_not_asked() {
+    use std::os::unix::fs::PermissionsExt as _;
+    // Where anybody may run it. Another process copies it: as long as a child that another test starts
+    // has the file open for writing, too, it could not be run.
+    let folder = folder();
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+    let copy = folder.path().join("firsthit");
+    let copied = Command::new("cp").arg(PROGRAM).arg(&copy).status();
+    assert!(copied.unwrap().success());
     let is_root = rustix::process::geteuid().is_root();
     for limit in 1..=5 {
         let run = |line: &str| {
@@ -134,7 +142,7 @@ fn a_driver_that_could_not_have_its_threads_is_not_asked() {
                     "--clear-groups",
                 ]);
             }
-            command.arg(PROGRAM).args(words(line)).current_dir("/");
+            command.arg(&copy).args(words(line)).current_dir("/");
             command.output().unwrap()
         };
         for through in ways() {
