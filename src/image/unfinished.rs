@@ -35,6 +35,8 @@ impl Unfinished {
     /// Gives `file`, which was created with this, its name in the same `folder`. What has that name
     /// already is replaced.
     pub(super) fn persist(self, file: File, folder: &Path, target: &Path) -> io::Result<()> {
+        #[cfg(not(target_os = "linux"))]
+        let _ = folder;
         match self {
             #[cfg(target_os = "linux")]
             Unfinished::Nameless => nameless::persist(&file, folder, target),
