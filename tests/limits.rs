@@ -121,8 +121,8 @@ fn a_driver_that_could_not_have_its_memory_is_not_asked() {
 #[test]
 fn a_driver_that_could_not_have_its_threads_is_not_asked() {
     use std::os::unix::fs::PermissionsExt as _;
-    // Where anybody may run it. Another process copies it: as long as a child that another test starts
-    // has the file open for writing, too, it could not be run.
+    // Where anybody may run it. Another process copies it: as long as a child that another test
+    // starts has the file open for writing, too, it could not be run.
     let folder = folder();
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
     let copy = folder.path().join("firsthit");

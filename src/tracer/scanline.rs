@@ -17,7 +17,7 @@
 //! ```
 //!
 //! - `prepare/` makes a frame: solids and surface, and the edges and paints that they bring.
-//! - `edges/` holds the borders on the screen at which a row may change what it shows. Eye rays are
+//! - `edges/` holds the edges on the screen at which a row may change what it shows. Eye rays are
 //!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
 //!   or of a mirror image is a straight line or an ellipse, and where it crosses a row is a root,
 //!   known within a bound. So the *possible* columns of a region and its *certain* ones may differ:
@@ -105,7 +105,7 @@ pub(super) struct RowTracer<'f, P> {
 #[derive(Default)]
 pub(super) struct Scratch {
     active: ActiveEdges,
-    plan: DepthTests,
+    depth_tests: DepthTests,
     settled: Vec<(Columns, Shown)>,
     shade: Shade,
 }
@@ -156,7 +156,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
     /// What tracing rows of this frame needs.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
         scratch.active.begin(&self.edges, self.grid);
-        scratch.plan.clear();
+        scratch.depth_tests.clear();
         scratch.shade.cache.begin(self.shaded_spheres);
     }
 
@@ -220,25 +220,25 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         let grid = self.grid;
         let Scratch {
             active,
-            plan,
+            depth_tests,
             settled,
             shade,
         } = scratch;
-        if plan.is_full() {
-            plan.clear();
+        if depth_tests.is_full() {
+            depth_tests.clear();
             active.forget();
         }
-        let look = |column: &Coverage| self.seen(column, plan);
+        let look = |column: &Coverage| self.visible(column, depth_tests);
         active.enter(row.number, &self.edges, self.level, grid, look);
         let mut from = 0;
-        for part in 0..active.len() {
-            let (to, seen) = active.part(part, row.number);
-            match seen {
+        for span in 0..active.len() {
+            let (to, visible) = active.span(span, row.number);
+            match visible {
                 // A part that other rows have.
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(row, (from, to), shows, shade),
                 Visible::First(_) => {
-                    self.settle(plan, seen, row.y, (from, to), settled);
+                    self.settle(depth_tests, visible, row.y, (from, to), settled);
                     for (columns, shows) in settled.drain(..) {
                         self.write(row, columns, shows, shade);
                     }

@@ -1,8 +1,8 @@
-//! From the left end of a row to the right: which borders are crossed where, and what is seen
-//! between.
+//! The active edges: the crossings of a row from the left to the right, and what is visible between
+//! them.
 //!
-//! Rows are crossed [`ROWS`] at a time, and only by the borders that reach them. From one row to
-//! the next the crossings move little, so they are kept in order rather than put in order.
+//! The edges that reach a band of [`ROWS`] rows are crossed with all of its rows at once. Crossings
+//! move little from one row to the next, so their order is repaired instead of made anew.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
@@ -12,26 +12,26 @@ use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Packed, Visible};
 
-/// Where so many crossings change places in a row, it is put in order without asking whether it is.
+/// After so many exchanges in one row the next rows are sorted without asking whether they must be.
 const MANY: usize = 8;
 
-/// Whether a border crosses some rows, and how often.
+/// How often an edge crosses a band of rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Crosses {
     No,
-    /// Twice: where its columns begin and end is certain in all of these rows.
+    /// Twice a row: its region's possible columns are certain in the whole band.
     Certainly,
-    /// Four times: where they begin possibly and certainly, and where they end certainly and
+    /// Four times a row: the region begins possibly, then certainly; it ends certainly, then
     /// possibly.
     Possibly,
 }
 
-/// A crossing: which of the four of which border.
+/// One of the four crossings of an edge with a row: 4 · edge + kind.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing(u32);
 
 impl Crossing {
-    /// Those of a border, from the left.
+    /// Those of an edge, from the left.
     fn of(edge: usize, crosses: Crosses) -> impl Iterator<Item = Crossing> {
         let kinds: &[u32] = match crosses {
             Crosses::No => &[],
@@ -47,12 +47,12 @@ impl Crossing {
         self.0 as usize / 4
     }
 
-    /// Whether its border certainly holds the columns after it.
+    /// Whether the region certainly covers the columns after it.
     fn is_held(self) -> bool {
         self.0 % 4 == 1
     }
 
-    /// Whether it is unknown if it does.
+    /// Whether it is unknown if the region covers them.
     fn is_unknown(self) -> bool {
         self.0.is_multiple_of(2)
     }
@@ -63,23 +63,24 @@ impl Crossing {
     }
 }
 
-/// A part of a row: up to which crossing, and what is seen there.
+/// A part of a row: up to which crossing, and what is visible there.
 #[derive(Clone, Copy)]
-struct Piece {
+struct Span {
     to: Crossing,
-    seen: Packed,
+    visible: Packed,
 }
 
-/// The crossings of a row from the left, and what is seen between them.
+/// The crossings of a row from the left to the right, and what is visible between them.
 ///
-/// That depends on which borders have been crossed, and not on where. So it is kept from row to
-/// row, and where two crossings change places it is forgotten only between these two.
+/// Visibility between two crossings depends on which edges were crossed before, and not on where.
+/// So it is cached from row to row; where two crossings exchange places, only what lies between
+/// these two is found out again.
 #[derive(Default)]
 pub(crate) struct ActiveEdges {
     coverage: Coverage,
     /// The first of the rows that are crossed.
     first: Option<u32>,
-    /// How each border crosses them.
+    /// How each edge crosses them.
     crosses: Vec<Crosses>,
     /// Bit by bit, 64 in a word, those that do.
     crossing: Vec<u64>,
@@ -87,34 +88,34 @@ pub(crate) struct ActiveEdges {
     places: Vec<[u32; ROWS]>,
     /// In the order of the row that was entered last.
     crossings: Vec<Crossing>,
-    /// What is seen before each of them, and after the last.
-    seen: Vec<Packed>,
+    /// What is visible before each of them, and after the last.
+    visible: Vec<Packed>,
     /// The columns of these in that row.
     here: Vec<u32>,
     /// Bit by bit, the rows in which they come in another order, and those that have columns of
-    /// which it is not known what is seen.
+    /// which it is not known what is visible.
     disordered: u64,
     wanting: u64,
-    /// What the row that was entered last shows, if `is_planned`; neighbours that show the same
+    /// What the row that was entered last shows, if `has_spans`; neighbours that show the same
     /// are one. The first is none.
-    pieces: Vec<Piece>,
-    is_planned: bool,
-    /// The places in `seen` where nobody has looked.
+    spans: Vec<Span>,
+    has_spans: bool,
+    /// The places in `visible(` where nobody has looked.
     open: Vec<usize>,
     end: Crossing,
-    /// Borders whose crossings are not, or no longer, those in `crossings`.
+    /// Edges whose crossings are not, or no longer, those in `crossings`.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
     /// Their new crossings, by their places in the first of the rows.
     arrivals: Vec<(u32, Crossing)>,
-    /// Where `crossings` and `seen` are made anew.
+    /// Where `crossings` and `visible(` are made anew.
     spare: Changed,
 }
 
 #[derive(Default)]
 struct Changed {
     crossings: Vec<Crossing>,
-    seen: Vec<Packed>,
+    visible: Vec<Packed>,
 }
 
 impl ActiveEdges {
@@ -127,7 +128,7 @@ impl ActiveEdges {
         self.crossing.clear();
         self.crossing.resize(edges.kinds.len(), 0);
         self.places.resize(4 * count + 4, [0; ROWS]);
-        // The end of every row is a crossing of no border.
+        // The end of every row is a crossing of no edge.
         self.end = Crossing(4 * count as u32);
         self.places[4 * count] = [grid.size; ROWS];
         self.is_changed.clear();
@@ -137,14 +138,14 @@ impl ActiveEdges {
         self.forget();
     }
 
-    /// Forgets what is seen.
+    /// Forgets what is visible.
     pub(crate) fn forget(&mut self) {
-        self.seen.clear();
-        self.seen.resize(self.crossings.len() + 1, Packed::OPEN);
-        self.is_planned = false;
+        self.visible.clear();
+        self.visible.resize(self.crossings.len() + 1, Packed::OPEN);
+        self.has_spans = false;
     }
 
-    /// Goes to a row. `look` is asked what is seen in a column where that is not known.
+    /// Goes to a row. `look` is asked what is visible in a column where that is not known.
     pub(crate) fn enter(
         &mut self,
         row: u32,
@@ -171,21 +172,24 @@ impl ActiveEdges {
                 dispatch!(level, simd => self.find_disorder(simd));
             }
         }
-        if !self.is_planned || self.wanting >> row & 1 == 1 {
+        if !self.has_spans || self.wanting >> row & 1 == 1 {
             self.look(row, edges, look);
-            dispatch!(level, simd => self.plan(simd));
+            dispatch!(level, simd => self.merge_spans(simd));
         }
     }
 
     /// How many parts the row has.
     pub(crate) fn len(&self) -> usize {
-        self.pieces.len() - 1
+        self.spans.len() - 1
     }
 
-    /// Where a part of a row ends, and what is seen there.
-    pub(crate) fn part(&self, number: usize, row: u32) -> (u32, Visible) {
-        let Piece { to, seen } = self.pieces[number + 1];
-        (self.places[to.0 as usize][row as usize % ROWS], seen.seen())
+    /// Where a part of a row ends, and what is visible there.
+    pub(crate) fn span(&self, number: usize, row: u32) -> (u32, Visible) {
+        let Span { to, visible } = self.spans[number + 1];
+        (
+            self.places[to.0 as usize][row as usize % ROWS],
+            visible.visible(),
+        )
     }
 
     /// The crossing after as many others, or the row's end.
@@ -211,48 +215,51 @@ impl ActiveEdges {
                 self.here[to] = self.here[to - 1];
                 self.crossings[to] = self.crossings[to - 1];
                 // Between the two, one was crossed before, and now the other.
-                self.seen[to] = Packed::OPEN;
+                self.visible[to] = Packed::OPEN;
                 to -= 1;
                 changes += 1;
             }
             self.here[to] = place;
             self.crossings[to] = crossing;
         }
-        self.is_planned &= changes == 0;
+        self.has_spans &= changes == 0;
         changes
     }
 
     /// What rows show where the crossings are in this order, as far as it is known.
     #[inline(always)]
-    fn plan<S: Simd>(&mut self, simd: S) {
+    fn merge_spans<S: Simd>(&mut self, simd: S) {
         // What comes next is not to be foreseen: every step does the same, and counts or does not
         // count.
-        let nothing = Piece {
+        let nothing = Span {
             to: self.end,
-            seen: Packed::OPEN,
+            visible: Packed::OPEN,
         };
-        self.pieces.clear();
-        self.pieces.resize(self.seen.len() + 1, nothing);
+        self.spans.clear();
+        self.spans.resize(self.visible.len() + 1, nothing);
         self.open.clear();
-        self.open.resize(self.seen.len() + 1, 0);
-        let (mut pieces, mut open) = (0, 0);
+        self.open.resize(self.visible.len() + 1, 0);
+        let (mut spans, mut open) = (0, 0);
         let mut last = nothing;
-        for (gap, &seen) in self.seen.iter().enumerate() {
-            let is_open = seen == Packed::OPEN;
+        for (gap, &visible) in self.visible.iter().enumerate() {
+            let is_open = visible == Packed::OPEN;
             self.open[open] = gap;
             open += usize::from(is_open);
-            let (to, now) = (self.crossings.get(gap).copied().unwrap_or(self.end), seen);
-            let is_new = !is_open & (now != last.seen);
-            pieces += usize::from(is_new);
-            last = Piece {
+            let (to, now) = (
+                self.crossings.get(gap).copied().unwrap_or(self.end),
+                visible,
+            );
+            let is_new = !is_open & (now != last.visible);
+            spans += usize::from(is_new);
+            last = Span {
                 to: if is_open { last.to } else { to },
-                seen: if is_open { last.seen } else { now },
+                visible: if is_open { last.visible } else { now },
             };
-            self.pieces[pieces] = last;
+            self.spans[spans] = last;
         }
-        self.pieces.truncate(pieces + 1);
+        self.spans.truncate(spans + 1);
         self.open.truncate(open);
-        self.is_planned = true;
+        self.has_spans = true;
         let mut wanting = mask32x8::splat(simd, false);
         for &gap in &self.open {
             let from = match gap.checked_sub(1) {
@@ -266,7 +273,7 @@ impl ActiveEdges {
         self.wanting = wanting.to_bitmask();
     }
 
-    /// Finds out what is seen where the row has columns of which that is not known.
+    /// Finds out what is visible where the row has columns of which that is not known.
     fn look(
         &mut self,
         row: usize,
@@ -274,11 +281,11 @@ impl ActiveEdges {
         mut look: impl FnMut(&Coverage) -> Visible,
     ) {
         let mut from = 0;
-        for gap in 0..self.seen.len() {
+        for gap in 0..self.visible.len() {
             let to = self.places[self.crossing(gap).0 as usize][row];
-            if self.seen[gap] == Packed::OPEN && from < to {
+            if self.visible[gap] == Packed::OPEN && from < to {
                 self.coverage.look(edges);
-                self.seen[gap] = Packed::new(look(&self.coverage));
+                self.visible[gap] = Packed::new(look(&self.coverage));
             }
             from = to;
             if let Some(crossing) = self.crossings.get(gap) {
@@ -288,7 +295,7 @@ impl ActiveEdges {
         }
     }
 
-    /// How the borders cross the rows from `first` on.
+    /// How the edges cross the rows from `first` on.
     #[inline(always)]
     fn cross<S: Simd>(&mut self, simd: S, edges: &EdgeTable<'_>, first: u32, grid: Grid) {
         self.changed.clear();
@@ -315,10 +322,10 @@ impl ActiveEdges {
             self.change();
         }
         // Columns may have come between other crossings.
-        self.is_planned &= self.open.is_empty();
+        self.has_spans &= self.open.is_empty();
     }
 
-    /// How a border crosses them.
+    /// How an edge crosses them.
     #[inline(always)]
     fn cross_by<S: Simd>(
         &mut self,
@@ -346,9 +353,9 @@ impl ActiveEdges {
         }
     }
 
-    /// Takes out the crossings of borders that have changed, and brings in their new ones.
+    /// Takes out the crossings of edges that have changed, and brings in their new ones.
     fn change(&mut self) {
-        self.is_planned = false;
+        self.has_spans = false;
         self.arrivals.clear();
         for edge in self.changed.drain(..) {
             self.is_changed[edge] = true;
@@ -358,38 +365,37 @@ impl ActiveEdges {
             }
         }
         self.arrivals.sort_unstable();
-        let Changed { crossings, seen } = &mut self.spare;
+        let Changed { crossings, visible } = &mut self.spare;
         crossings.clear();
-        seen.clear();
+        visible.clear();
         let mut arrivals = self.arrivals.iter().peekable();
-        // How many columns of crossings that are gone, or that have come, begin before here and
-        // have not ended. What was seen where there were none still is where there are
-        // none.
+        // `gone` counts the removed edges that hold the present place, `come` the added ones. Where
+        // both are 0, no edge was added or removed, and the cached visibility holds.
         let (mut gone, mut come) = (0, 0);
-        let mut before = self.seen[0];
-        for i in 0..self.seen.len() {
+        let mut before = self.visible[0];
+        for i in 0..self.visible.len() {
             let crossing = self.crossings.get(i);
             if let Some(crossing) = crossing.filter(|crossing| self.is_changed[crossing.edge()]) {
                 gone += crossing.step();
                 if before == Packed::OPEN && gone == 0 {
-                    before = self.seen[i + 1];
+                    before = self.visible[i + 1];
                 }
                 continue;
             }
             let place = crossing.map_or(u32::MAX, |crossing| self.places[crossing.0 as usize][0]);
             while let Some((_, arrival)) = arrivals.next_if(|(arrives, _)| *arrives < place) {
-                seen.push(before.if_closed(come));
+                visible.push(before.if_closed(come));
                 crossings.push(*arrival);
                 come += arrival.step();
             }
-            seen.push(before.if_closed(come));
+            visible.push(before.if_closed(come));
             if let Some(&crossing) = crossing {
                 crossings.push(crossing);
-                before = self.seen[i + 1].if_closed(gone);
+                before = self.visible[i + 1].if_closed(gone);
             }
         }
         std::mem::swap(&mut self.crossings, crossings);
-        std::mem::swap(&mut self.seen, seen);
+        std::mem::swap(&mut self.visible, visible);
         self.is_changed.fill(false);
     }
 

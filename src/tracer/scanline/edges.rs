@@ -1,4 +1,4 @@
-//! The edges of a frame: every border on the screen at which what a row shows may change.
+//! The edges of a frame: the lines on the screen at which a row may change what it shows.
 //!
 //! A silhouette, an edge between two faces, the outline of a shadow or of a mirror image is a
 //! straight line or an ellipse on the screen, because eye rays are parallel, and so are those to

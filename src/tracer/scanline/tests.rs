@@ -50,14 +50,18 @@ fn spans<P: Lines>(
     row: u32,
     scratch: &mut Scratch,
 ) -> Vec<(u32, Visible)> {
-    let Scratch { active, plan, .. } = scratch;
+    let Scratch {
+        active,
+        depth_tests,
+        ..
+    } = scratch;
     active.enter(row, &tracer.edges, tracer.level, tracer.grid, |coverage| {
-        tracer.seen(coverage, plan)
+        tracer.visible(coverage, depth_tests)
     });
     let mut spans: Vec<(u32, Visible)> = Vec::new();
     let mut from = 0;
-    for part in 0..active.len() {
-        let (to, visible) = active.part(part, row);
+    for number in 0..active.len() {
+        let (to, visible) = active.span(number, row);
         if to > from {
             spans.push((to, visible));
             from = to;
@@ -102,7 +106,7 @@ fn spans_kept_from_row_to_row_are_spans_computed_anew() {
                 let spans = spans(tracer, row, scratch);
                 let spans = spans.into_iter();
                 spans
-                    .map(|(to, visible)| (to, words(visible, &scratch.plan)))
+                    .map(|(to, visible)| (to, words(visible, &scratch.depth_tests)))
                     .collect::<Vec<_>>()
             };
             // Neighbours that show the same may be one span in one of them, and two in the other.
@@ -131,7 +135,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             let mut from = 0;
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut settled: Vec<(Columns, Shown)> = Vec::new();
-                tracer.settle(&scratch.plan, visible, y, (from, to), &mut settled);
+                tracer.settle(&scratch.depth_tests, visible, y, (from, to), &mut settled);
                 for ((first, end), shown) in settled {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);

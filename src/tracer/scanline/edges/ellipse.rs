@@ -49,7 +49,7 @@ impl RowOffset {
     }
 }
 
-/// Lines in one direction from the points of a sheet: what all spheres that they meet have in
+/// Lines in one direction from the points of a plane: what all spheres that they meet have in
 /// common.
 pub(crate) struct Lines<'s> {
     plane: &'s PixelPlane,

@@ -1,4 +1,4 @@
-//! Where a border crosses rows, before that is rounded to columns.
+//! Where a region begins and ends in some rows, enclosed: before places are rounded to columns.
 
 /// Where columns begin and end in as many rows as there are lanes, given in columns: the first at
 /// or after a place, up to another place.

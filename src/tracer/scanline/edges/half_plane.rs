@@ -1,4 +1,4 @@
-//! Pixels on one side of a straight border.
+//! Pixels on one side of a straight edge.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -19,7 +19,7 @@ pub(crate) struct HalfPlane {
     crossing: Crossing,
 }
 
-/// How rows cross a border.
+/// How rows cross an edge.
 enum Crossing {
     /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is
     /// to the right of it, or to the left.
@@ -81,11 +81,11 @@ impl HalfPlane {
         }
     }
 
-    /// The pixels whose points on the sheet lie in a half-space.
+    /// The pixels whose points on the plane lie in a half-space.
     pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
         let n = half_space.normal;
         if half_space.border.is_some() && half_space.border == plane.plane {
-            // All of them lie on its border.
+            // All of them lie on its edge.
             let zero = Bounded::exact(0.0);
             return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
         }
@@ -105,7 +105,7 @@ impl HalfPlane {
         Some(sign.is_gt() || (self.closed && sign.is_eq()))
     }
 
-    /// The same, asked only where its border may be.
+    /// The same, asked only where its edge may be.
     pub(crate) fn decide_near(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let (root, rightward) = match &self.crossing {
             Crossing::Right(root) => (root, true),

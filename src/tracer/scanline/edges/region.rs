@@ -1,8 +1,8 @@
-//! Where borders cross a row.
+//! Where edges cross a row.
 //!
 //! # Why rows
 //!
-//! Eye rays are parallel, and so are those to the light. So every border in the picture that does
+//! Eye rays are parallel, and so are those to the light. So every edge in the picture that does
 //! not lie on a sphere is a straight line or an ellipse on the screen: a silhouette, an edge
 //! between faces, the surface's sides, the outline of a mirror image, a shadow on the surface or on
 //! a face. Each is known as a polynomial in X and Y, the place on the screen in thirds of

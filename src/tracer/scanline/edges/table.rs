@@ -1,4 +1,4 @@
-//! The borders of a frame: what changes where a row crosses them.
+//! The edges of a frame: what changes where a row crosses them.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::tracer::arena::collect;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::ROWS;
 
-/// What a border is of.
+/// What an edge is of.
 #[derive(Clone, Copy)]
 pub(crate) enum Edge {
     Surface,
@@ -23,14 +23,14 @@ pub(crate) enum Edge {
     Mirrored(usize),
 }
 
-/// All borders of a frame, as they are found. Each is known by its number.
+/// All edges of a frame, as they are found. Each is known by its number.
 pub(crate) struct Edges<'f> {
     arena: &'f Bump,
     shapes: Growing<'f, Region<'f>>,
     of: Growing<'f, Edge>,
 }
 
-/// The borders of a frame.
+/// The edges of a frame.
 pub(crate) struct EdgeTable<'f> {
     pub(crate) shapes: &'f [Region<'f>],
     pub(crate) of: &'f [Edge],
@@ -42,7 +42,7 @@ pub(crate) struct EdgeTable<'f> {
 }
 
 impl EdgeTable<'_> {
-    /// Which of 64 borders can cross any of the rows from `first` on, bit by bit.
+    /// Which of 64 edges can cross any of the rows from `first` on, bit by bit.
     #[inline(always)]
     pub(crate) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
         let [from, to] = &self.rows[word];
@@ -57,7 +57,7 @@ impl EdgeTable<'_> {
     }
 }
 
-/// What borders are of, bit by bit.
+/// What edges are of, bit by bit.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Kinds {
     pub(crate) surface: u64,
@@ -67,7 +67,7 @@ pub(crate) struct Kinds {
 }
 
 impl Kinds {
-    /// Up to 64 borders.
+    /// Up to 64 edges.
     fn of(edges: &[Edge]) -> Kinds {
         let mut kinds = Kinds::default();
         for (bit, edge) in edges.iter().enumerate() {

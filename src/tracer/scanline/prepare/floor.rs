@@ -47,7 +47,7 @@ impl<'f> Floor<'f> {
             plane: Some(floor.surface.support),
         };
         // Three times as large, nothing is a third and rounds: of a surface that is level with the
-        // rows, the border may lie on all pixels of one.
+        // rows, the edge may lie on all pixels of one.
         let scaled = [
             plane.origin * three,
             plane.per_column * three,

@@ -36,7 +36,7 @@ pub(crate) struct Solids<'f> {
     pub(crate) mirrored: bool,
     pub(crate) solids: &'f [Solid<'f>],
     /// Which is in front of which.
-    pub(crate) order: Separation<'f>,
+    pub(crate) separation: Separation<'f>,
 }
 
 /// One of them.
@@ -62,11 +62,11 @@ pub(crate) struct Facet {
     pub(crate) in_shadow: PaintNumber,
     /// Whether it is in shadow where nothing else throws one.
     pub(crate) turned_away: bool,
-    /// The borders of the shadows on it.
+    /// The edges of the shadows on it.
     pub(crate) shadows: Range<usize>,
 }
 
-/// Two facets, the first of the lower number, and the border of where eye rays enter that last.
+/// Two facets, the first of the lower number, and the edge of where eye rays enter that last.
 pub(crate) struct Pair {
     pub(crate) facets: (usize, usize),
     pub(crate) first: usize,
@@ -105,7 +105,7 @@ impl<'f> Solids<'f> {
             Stage::Tetrahedron => count..count + view.tetrahedra.len(),
             _ => 0..count + view.tetrahedra.len(),
         };
-        let order = Separation::new(view, numbers.clone(), arena);
+        let separation = Separation::new(view, numbers.clone(), arena);
         let decision = |solid: usize, face: Option<usize>, in_shadow: bool| {
             let seen = Seen {
                 solid: solid as u16,
@@ -241,7 +241,7 @@ impl<'f> Solids<'f> {
         Solids {
             mirrored,
             solids: solids.into_bump_slice(),
-            order,
+            separation,
         }
     }
 }
@@ -368,8 +368,8 @@ fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, ([f64; 3], f
     (plane, (depths.map(Bounded::value), error))
 }
 
-/// The pixels whose points on a sheet are in the shadows of `casters`. Of a caster that `is_ahead`
-/// of all the sheet's pixels it is not asked whether it is.
+/// The pixels whose points on a plane are in the shadows of `casters`. Of a caster that `is_ahead`
+/// of all the plane's pixels it is not asked whether it is.
 pub(crate) fn shadows_on<'f>(
     plane: &PixelPlane,
     view: &View<'_, Bounded>,

@@ -1,11 +1,11 @@
-//! On which side of each border a column is, and so which solids, shadows and mirror images it
-//! meets.
+//! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! From crossing to crossing only bits change; what they mean is found out where somebody looks.
+//! A crossing changes two bits of it; what the bits mean is found out for spans whose visibility is
+//! not cached.
 
 use crate::tracer::scanline::edges::table::{Edge, EdgeTable};
 
-/// Borders of one kind: whether any of them holds a column, and of which this is not known.
+/// Edges of one kind: whether any of them holds a column, and of which this is not known.
 #[derive(Clone, Copy, Default)]
 struct Any {
     held: bool,
@@ -42,10 +42,11 @@ impl Met {
     }
 }
 
-/// What is known of a column.
+/// The regions that cover the present column.
 #[derive(Default)]
 pub(crate) struct Coverage {
-    /// The borders that hold it, and those of which this is not known: bit by bit, 64 in a word.
+    /// For each edge a bit whether its region certainly covers the column, and one whether that is
+    /// unknown; 64 edges a word.
     held: Vec<(u64, u64)>,
     pub(crate) direct: Met,
     pub(crate) mirrored: Met,
@@ -54,13 +55,13 @@ pub(crate) struct Coverage {
 }
 
 impl Coverage {
-    /// Goes to where none of a frame's borders holds it.
+    /// Goes to where none of a frame's edges holds it.
     pub(crate) fn clear(&mut self, edges: &EdgeTable<'_>) {
         self.held.clear();
         self.held.resize(edges.kinds.len(), (0, 0));
     }
 
-    /// Goes across a border: whether that holds it then, and whether this is unknown.
+    /// Goes across an edge: whether that holds it then, and whether this is unknown.
     pub(crate) fn cross(&mut self, edge: usize, is_held: bool, is_unknown: bool) {
         let (held, unknown) = &mut self.held[edge / 64];
         let bit = edge % 64;
@@ -81,7 +82,7 @@ impl Coverage {
             self.shadows.add(kinds.shadows, bits);
             self.direct.any.add(kinds.direct, bits);
             self.mirrored.any.add(kinds.mirrored, bits);
-            // Borders of solids are numbered in the order of these.
+            // Edges of solids are numbered in the order of these.
             let mut solids = bits.0 & (kinds.direct | kinds.mirrored);
             while solids != 0 {
                 match edges.of[64 * word + solids.trailing_zeros() as usize] {
@@ -104,7 +105,7 @@ impl Coverage {
         self.shadows.known()
     }
 
-    /// Whether it is one of a border's.
+    /// Whether it is one of an edge's.
     pub(crate) fn holds(&self, edge: usize) -> Option<bool> {
         let (held, unknown) = self.held[edge / 64];
         let is = |bits: u64| bits >> (edge % 64) & 1 == 1;

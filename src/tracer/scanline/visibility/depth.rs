@@ -1,4 +1,7 @@
-//! What is in front where the order of solids depends on the row and the column.
+//! The depth test: which of several solids is nearest where no plane keeps them apart.
+//!
+//! It bounds the depths of each solid over a run of columns. Where the bounds overlap, the run is
+//! halved, down to single pixels, which are then asked by themselves.
 
 use crate::tracer::ladder::Lines;
 use crate::tracer::scanline::RowTracer;
@@ -18,24 +21,24 @@ impl<P: Lines> RowTracer<'_, P> {
     /// What a row shows where it has to decide about that, from the left.
     pub(crate) fn settle(
         &self,
-        plan: &DepthTests,
-        seen: Visible,
+        depth_tests: &DepthTests,
+        visible: Visible,
         y: f64,
         columns: Columns,
         settled: &mut Vec<(Columns, Shown)>,
     ) {
-        let shows = match seen {
+        let shows = match visible {
             Visible::Only(shows) => shows,
-            Visible::First(contest) => {
-                let contest = plan.test(contest);
-                match (self.front(&contest, y, columns), halves(columns)) {
-                    (Front::Solid(place), _) => contest.solids[place].1,
+            Visible::First(test) => {
+                let test = depth_tests.test(test);
+                match (self.front(&test, y, columns), halves(columns)) {
+                    (Front::Solid(place), _) => test.solids[place].1,
                     (Front::Rest, _) => {
-                        return self.settle(plan, contest.rest, y, columns, settled);
+                        return self.settle(depth_tests, test.rest, y, columns, settled);
                     }
                     (Front::Unknown, Some(halves)) => {
                         for half in halves {
-                            self.settle(plan, seen, y, half, settled);
+                            self.settle(depth_tests, visible, y, half, settled);
                         }
                         return;
                     }
@@ -50,9 +53,9 @@ impl<P: Lines> RowTracer<'_, P> {
     }
 
     /// What is in front in all these columns.
-    fn front(&self, contest: &DepthTest<'_>, y: f64, columns: Columns) -> Front {
-        let view = self.solids(contest.mirrored);
-        let surface = self.floor.as_ref().filter(|_| contest.surface);
+    fn front(&self, test: &DepthTest<'_>, y: f64, columns: Columns) -> Front {
+        let view = self.solids(test.mirrored);
+        let surface = self.floor.as_ref().filter(|_| test.surface);
         let ends = [columns.0, columns.1 - 1].map(|column| self.grid.place(column));
         // The candidate is what ends first; it is in front if all others begin behind that.
         let mut candidate = (
@@ -60,12 +63,12 @@ impl<P: Lines> RowTracer<'_, P> {
             surface.map_or((f64::INFINITY, f64::INFINITY), |floor| floor.depth_at(y)),
         );
         let mut others_begin = f64::INFINITY;
-        for (place, &(solid, _)) in contest.solids.iter().enumerate() {
+        for (place, &(solid, _)) in test.solids.iter().enumerate() {
             let solid = &view.solids[solid];
             let (front, (begins, ends_first)) = &candidate;
             // Of a sphere that is listed twice the first is seen.
             if let Front::Solid(first) = front
-                && view.solids[contest.solids[*first].0].is_same_sphere(solid)
+                && view.solids[test.solids[*first].0].is_same_sphere(solid)
             {
                 continue;
             }

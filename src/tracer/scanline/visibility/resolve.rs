@@ -1,4 +1,4 @@
-//! What is seen in a coverage, once it is known which borders hold it.
+//! Visibility: from the regions that cover a span to what it shows.
 
 use crate::scene::Side;
 use crate::tracer::ladder::Lines;
@@ -9,8 +9,8 @@ use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{DepthTests, Shown, Visible};
 
 impl<P: Lines> RowTracer<'_, P> {
-    /// What is seen in a coverage, and in its neighbours up to the next crossing.
-    pub(crate) fn seen(&self, coverage: &Coverage, plan: &mut DepthTests) -> Visible {
+    /// What is visible in a span with this coverage.
+    pub(crate) fn visible(&self, coverage: &Coverage, depth_tests: &mut DepthTests) -> Visible {
         let Some(met) = coverage.direct.known() else {
             return Visible::UNKNOWN;
         };
@@ -27,21 +27,21 @@ impl<P: Lines> RowTracer<'_, P> {
         };
         match (met, floor) {
             ([], None) => Visible::Only(Shown::Paint(self.background)),
-            ([], Some(floor)) => self.visible_surface(floor, coverage, plan),
+            ([], Some(floor)) => self.visible_surface(floor, coverage, depth_tests),
             (_, floor) => {
                 if floor.is_none()
-                    && let Some(solid) = self.direct.order.first(met)
+                    && let Some(solid) = self.direct.separation.first(met)
                 {
                     return Visible::Only(solid_in(&self.direct, solid, coverage));
                 }
                 let rest = match floor {
-                    Some(floor) => self.visible_surface(floor, coverage, plan),
+                    Some(floor) => self.visible_surface(floor, coverage, depth_tests),
                     None => Visible::Only(Shown::Paint(self.background)),
                 };
                 let shows = met
                     .iter()
                     .map(|&solid| (solid, solid_in(&self.direct, solid, coverage)));
-                plan.defer(false, shows, floor.is_some(), rest)
+                depth_tests.defer(false, shows, floor.is_some(), rest)
             }
         }
     }
@@ -51,7 +51,7 @@ impl<P: Lines> RowTracer<'_, P> {
         &self,
         floor: &Floor<'_>,
         coverage: &Coverage,
-        plan: &mut DepthTests,
+        depth_tests: &mut DepthTests,
     ) -> Visible {
         let itself = Visible::Only(Shown::Paint(floor.paint));
         let mirrored = match (coverage.surface_in_shadow(), &floor.mirrored) {
@@ -71,13 +71,13 @@ impl<P: Lines> RowTracer<'_, P> {
         if met.iter().any(goes_through) {
             return Visible::UNKNOWN;
         }
-        if let Some(solid) = mirrored.order.first(met) {
+        if let Some(solid) = mirrored.separation.first(met) {
             return Visible::Only(solid_in(mirrored, solid, coverage));
         }
         let shows = met
             .iter()
             .map(|&solid| (solid, solid_in(mirrored, solid, coverage)));
-        plan.defer(true, shows, false, itself)
+        depth_tests.defer(true, shows, false, itself)
     }
 }
 

@@ -1,9 +1,8 @@
-//! What a row shows from crossing to crossing. The next row mostly shows the same, only a little
-//! further left or right.
+//! What is visible between two crossings of a row: the answer of `resolve`, as it is cached.
 
 use crate::tracer::scanline::write::paint::PaintNumber;
 
-/// What columns show.
+/// What neighbouring columns show.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     Paint(PaintNumber),
@@ -12,16 +11,16 @@ pub(crate) enum Shown {
         mirrored: bool,
         solid: u32,
     },
-    /// It is not known: each is to be asked for.
+    /// Unknown: each pixel is asked by itself.
     Unknown,
 }
 
-/// What is seen between two crossings.
+/// What is visible between two crossings.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Visible {
-    /// This, whatever the row.
+    /// The same in every row.
     Only(Shown),
-    /// What is in front, by the number of the contest that a row decides.
+    /// The nearest of some solids, which the row decides by the depth test of this number.
     First(u32),
 }
 
@@ -29,17 +28,17 @@ impl Visible {
     pub(crate) const UNKNOWN: Visible = Visible::Only(Shown::Unknown);
 }
 
-/// What is seen, or that this has not been found out, in a word: rows of these are compared without
-/// a branch.
+/// What is visible, or that this has not been found out, in a word: rows of these are compared
+/// without a branch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packed(u64);
 
 impl Packed {
-    /// Nobody has looked yet.
+    /// Not found out yet.
     pub(crate) const OPEN: Packed = Packed(0);
 
-    pub(crate) fn new(seen: Visible) -> Packed {
-        let (kind, number) = match seen {
+    pub(crate) fn new(visible: Visible) -> Packed {
+        let (kind, number) = match visible {
             Visible::Only(Shown::Unknown) => (1, 0),
             Visible::Only(Shown::Paint(PaintNumber(number))) => (2, number),
             Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid),
@@ -53,7 +52,7 @@ impl Packed {
         if columns == 0 { self } else { Packed::OPEN }
     }
 
-    pub(crate) fn seen(self) -> Visible {
+    pub(crate) fn visible(self) -> Visible {
         let number = self.0 as u32;
         match self.0 >> 32 {
             2 => Visible::Only(Shown::Paint(PaintNumber(number))),
@@ -73,7 +72,7 @@ pub(crate) struct DepthTest<'p> {
     pub(crate) solids: &'p [(usize, Shown)],
     /// Whether the surface may be in front of them.
     pub(crate) surface: bool,
-    /// What is seen where none of them is in front.
+    /// What is visible where none of them is in front.
     pub(crate) rest: Visible,
 }
 
@@ -92,19 +91,19 @@ const MANY: usize = 4096;
 /// What rows have to decide.
 #[derive(Default)]
 pub(crate) struct DepthTests {
-    contests: Vec<Stored>,
+    tests: Vec<Stored>,
     solids: Vec<(usize, Shown)>,
 }
 
 impl DepthTests {
     pub(crate) fn clear(&mut self) {
-        self.contests.clear();
+        self.tests.clear();
         self.solids.clear();
     }
 
     /// Whether there are so many contests that the oldest are hardly needed any more.
     pub(crate) fn is_full(&self) -> bool {
-        self.contests.len() > MANY
+        self.tests.len() > MANY
     }
 
     /// Leaves it to the row what is in front.
@@ -117,14 +116,14 @@ impl DepthTests {
     ) -> Visible {
         let from = self.solids.len();
         self.solids.extend(solids);
-        self.contests.push(Stored {
+        self.tests.push(Stored {
             mirrored,
             from,
             to: self.solids.len(),
             surface,
             rest,
         });
-        Visible::First(self.contests.len() as u32 - 1)
+        Visible::First(self.tests.len() as u32 - 1)
     }
 
     pub(crate) fn test(&self, number: u32) -> DepthTest<'_> {
@@ -134,7 +133,7 @@ impl DepthTests {
             to,
             surface,
             rest,
-        } = self.contests[number as usize];
+        } = self.tests[number as usize];
         DepthTest {
             mirrored,
             solids: &self.solids[from..to],
