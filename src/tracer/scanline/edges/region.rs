@@ -157,3 +157,98 @@ impl<'f> Region<'f> {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::number::{Bounded, Real as _};
+    use crate::random::Random;
+    use crate::tracer::vector::Vector;
+
+    const SIZE: u32 = 24;
+
+    /// constant + column · X + row · Y in whole numbers, and whether 0 belongs to it.
+    type Line = (i64, i64, i64, bool);
+
+    /// Twice a sphere's center and radius in view space, in whole numbers.
+    type Sphere = ([i64; 3], i64);
+
+    /// Whether a pixel is in all of them: in whole numbers, so that there is nothing to round.
+    fn holds(lines: &[Line], sphere: Option<Sphere>, column: u32, row: u32) -> bool {
+        let half = i64::from(SIZE / 2);
+        let [x, y] = [column, row].map(|number| 3 * (i64::from(number) - half));
+        let on_side = |&(constant, column, row, closed): &Line| {
+            let value = constant + column * x + row * y;
+            value > 0 || closed && value == 0
+        };
+        // 109 (X − c_x)² + (10 (Y − c_y) − 3 (Z − c_z))² ≤ 109 R², four times, with Z = 3N/2.
+        let in_outline = |([cx, cy, cz], radius): Sphere| {
+            let across = 2 * x - cx;
+            let along = 10 * (2 * y - cy) - 3 * (6 * half - cz);
+            109 * across * across + along * along <= 109 * radius * radius
+        };
+        lines.iter().all(on_side) && sphere.is_none_or(in_outline)
+    }
+
+    #[test]
+    fn certain_columns_are_in_a_region_and_impossible_ones_are_not() {
+        let mut random = Random::new();
+        let mut number = |most: i64| random.below(2 * most as usize + 1) as i64 - most;
+        let grid = Grid::new(SIZE);
+        let exact = |number: i64| Bounded::exact(number as f64);
+        let (mut certain, mut doubtful) = (0, 0);
+        for round in 0..3000 {
+            let lines: Vec<Line> = (0..round % 4)
+                .map(|_| (3 * number(40), number(4), number(4), number(1) > 0))
+                .collect();
+            let sphere: Option<Sphere> = (round % 3 > 0).then(|| {
+                let center = [number(90), number(90), number(90)];
+                (center, number(60).abs() + 1)
+            });
+            let half_planes: Vec<HalfPlane> = lines
+                .iter()
+                .map(|&(constant, column, row, closed)| {
+                    HalfPlane::new(exact(constant), exact(column), exact(row), closed, grid)
+                })
+                .collect();
+            let ellipse = sphere.map(|([x, y, z], radius)| {
+                let [x, y, z, radius] =
+                    [x, y, z, radius].map(|twice| Bounded::exact(twice as f64 / 2.0));
+                Ellipse::outline(Vector::new(x, y, z), radius, grid)
+            });
+            let region = Region::new(&half_planes, ellipse, grid);
+            for first in (0..SIZE).step_by(ROWS) {
+                let mut spans =
+                    dispatch!(Level::baseline(), simd => region.cross(simd, first, grid));
+                // As they are crossed, and as they are after the columns in doubt were asked.
+                for narrowed in [false, true] {
+                    if narrowed {
+                        region.narrow(&mut spans, first, grid);
+                    }
+                    for row in 0..ROWS {
+                        let within = |ends: &[[u32; ROWS]; 2], column: u32| {
+                            ends[0][row] <= column && column < ends[1][row]
+                        };
+                        for column in 0..SIZE {
+                            let truth = holds(&lines, sphere, column, first + row as u32);
+                            let is_certain = within(&spans.certain, column);
+                            let is_possible = within(&spans.possible, column);
+                            let right = if truth { is_possible } else { !is_certain };
+                            assert!(
+                                right,
+                                "{lines:?} {sphere:?} column {column}, row {}",
+                                first as usize + row
+                            );
+                            certain += u32::from(is_certain == is_possible);
+                            doubtful += u32::from(is_certain != is_possible);
+                        }
+                    }
+                }
+            }
+        }
+        // A region that is nowhere certain would pass, too.
+        assert!(doubtful * 20 < certain, "{doubtful} against {certain}");
+    }
+}
