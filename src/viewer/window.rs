@@ -38,6 +38,9 @@ use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
 /// A driver that shows something else in so many frames in a row is wrong.
 const LOOKS: u32 = 4;
 
+/// So many frames are presented in a size before it is looked at one.
+const SETTLING: u64 = 2;
+
 /// The window and everything that draws in it.
 pub(super) struct View {
     /// `None` only while it is being replaced.
@@ -55,6 +58,9 @@ pub(super) struct View {
     growth: Growth,
     /// How often it may still be looked whether the driver shows what is drawn.
     looks: u32,
+    /// The frames presented in this size, and how many they were when it was looked at last.
+    presented: u64,
+    looked_at: u64,
 }
 
 /// What is lost when the context is. Freed in this order: the screen needs the context.
@@ -128,6 +134,8 @@ impl View {
             panel: false,
             growth: Growth::default(),
             looks: LOOKS,
+            presented: 0,
+            looked_at: SETTLING,
         };
         view.renew()?;
         Ok(view)
@@ -137,7 +145,7 @@ impl View {
     /// after it.
     fn renew(&mut self) -> Result<(), Failure> {
         self.drawing = None;
-        self.looks = LOOKS;
+        self.look_again();
         self.drawing = Some(Drawing::new(
             &self.config,
             &self.window,
@@ -172,7 +180,7 @@ impl View {
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
         self.growth.came(surface);
-        self.looks = LOOKS;
+        self.look_again();
         self.change(|view| view.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
@@ -316,28 +324,35 @@ impl View {
     /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be:
     /// once in each size of the window.
     ///
-    /// A window that is just being resized on the display may hold anything for a frame. So what
-    /// differs is looked at again in the next frames, which are asked for, before it is believed.
+    /// A window that is just being resized on the display may hold anything for some frames. So the
+    /// first that are presented in a size are not looked at, and what differs is looked at again in
+    /// the next ones before it is believed.
     pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
         let drawing = self.drawing.as_ref()?;
         // What shows fewer bits shows other bytes.
         let has_eight_bits = self.config.color_buffer_type() == Some(EIGHT_BITS);
-        if self.looks == 0 || self.is_empty() || !has_eight_bits {
+        let is_new = self.presented > self.looked_at;
+        if self.looks == 0 || !is_new || self.is_empty() || !has_eight_bits {
             return None;
         }
+        self.looked_at = self.presented;
         drawing.screen.draw(surface, placement);
         let differs = drawing.screen.first_difference(surface, placement, image);
+        let size = self.window.inner_size();
         self.looks = match differs {
             None => 0,
             Some(_) => self.looks - 1,
         };
-        if self.looks > 0 {
-            self.window.request_redraw();
-            return None;
-        }
-        let size = self.window.inner_size();
-        differs.filter(|_| UVec2::new(size.width, size.height) == surface)
+        let is_settled = UVec2::new(size.width, size.height) == surface;
+        differs.filter(|_| self.looks == 0 && is_settled)
+    }
+
+    /// The display may hold anything before it has presented some frames.
+    fn look_again(&mut self) {
+        self.looks = LOOKS;
+        self.presented = 0;
+        self.looked_at = SETTLING;
     }
 
     /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the
@@ -390,6 +405,7 @@ impl View {
         };
         self.window.pre_present_notify();
         if drawing.surface.swap_buffers(&drawing.context).is_ok() {
+            self.presented += 1;
             return Ok(true);
         }
         match self.renew() {

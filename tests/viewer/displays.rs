@@ -169,8 +169,10 @@ fn a_window_that_shows_a_wrong_pixel_is_told() {
         let Some(xvfb) = Xvfb::start(server) else {
             return;
         };
-        let arguments = ["view", "--stage", "6", "--size", "40"];
+        // It is looked at when some frames have been presented.
+        let arguments = ["view", "--stage", "7", "--size", "40"];
         let mut session = Session::on(xvfb, &arguments, &environment);
+        std::thread::sleep(std::time::Duration::from_secs(2));
         session.type_keys("q");
         let (status, errors) = session.program.ended();
         assert_eq!(status.code(), Some(0), "{errors}");

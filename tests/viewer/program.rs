@@ -120,6 +120,13 @@ impl Program {
         kibibytes.unwrap().parse().unwrap()
     }
 
+    /// Makes sure that it has not ended.
+    pub fn goes_on(&mut self) {
+        if self.process.try_wait().unwrap().is_some() {
+            panic!("it has ended: {:?}", self.ended());
+        }
+    }
+
     /// Waits until it has ended: its status, and all of its standard error.
     pub fn ended(&mut self) -> (ExitStatus, String) {
         let status = wait_for("the program's end", || self.process.try_wait().unwrap());

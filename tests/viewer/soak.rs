@@ -21,6 +21,7 @@ fn used_at_random_it_stays_well_and_its_memory_bounded() {
     let keys = b"1234567 .,+-0ekimhz";
     let mut settled = None;
     while start.elapsed() < Duration::from_secs(seconds) {
+        session.program.goes_on();
         match random(12) {
             0 => session.resize(1 + random(700) as u32, 1 + random(700) as u32),
             1 => session.point(random(300) as i16, random(300) as i16),
