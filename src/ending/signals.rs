@@ -3,6 +3,7 @@
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{self, Sender};
 use std::thread;
 
 use firsthit::image::abandon_unfinished;
@@ -20,21 +21,27 @@ pub(super) fn watch() {
     let always = Arc::new(AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, always);
     // It registers itself what it waits for: where there is no thread for it, signals end the
-    // program as they do any.
-    let _ = thread::Builder::new()
+    // program as they do any. Before that no file is begun.
+    let (registered, is_registered) = mpsc::channel();
+    let watching = thread::Builder::new()
         .name("signals".to_owned())
         .stack_size(1 << 16)
-        .spawn(wait);
+        .spawn(move || wait(registered));
+    if watching.is_ok() {
+        let _ = is_registered.recv();
+    }
 }
 
-/// Waits for a signal to end on, and ends as the signal does it.
-fn wait() {
+/// Waits for a signal to end on, and ends as the signal does it. `registered` is dropped once
+/// signals come here.
+fn wait(registered: Sender<()>) {
     let ignored = ignored();
     let ends = [SIGHUP, SIGINT, SIGTERM].into_iter();
     let Ok(mut signals) = Signals::new(ends.filter(|signal| ignored >> (signal - 1) & 1 == 0))
     else {
         return;
     };
+    drop(registered);
     if let Some(signal) = signals.forever().next() {
         abandon_unfinished();
         let _ = emulate_default_handler(signal);
