@@ -90,6 +90,10 @@ struct Canvas {
 impl Canvas {
     fn fill(&mut self, rect: Rect, [red, green, blue, alpha]: Color) {
         let part = rect.intersection(self.rect);
+        // One that lies beside the board has no first pixel.
+        if part.is_empty() {
+            return;
+        }
         let UVec2 { x: width, .. } = part.size();
         let color = [red, green, blue].map(|part| times(part, alpha));
         let pixel = [color[0], color[1], color[2], alpha];
@@ -172,5 +176,25 @@ mod tests {
             [times(255, 255), times(7, 0), times(255, 128)],
             [255, 0, 128]
         );
+    }
+
+    #[test]
+    fn what_lies_beside_a_board_fills_nothing() {
+        let rect = |min: [i32; 2], max: [i32; 2]| Rect {
+            min: min.into(),
+            max: max.into(),
+        };
+        for beside in [
+            rect([9, 0], [12, 4]),
+            rect([-9, 0], [-2, 4]),
+            rect([0, 5], [4, 9]),
+        ] {
+            let board = Board {
+                rect: rect([0, 0], [4, 4]),
+                paint: vec![Paint::Fill(beside, [1, 2, 3, 255])],
+            };
+            let bytes = board.rasterise(&mut Font::new(7));
+            assert_eq!(bytes, [0; 64], "{beside:?}");
+        }
     }
 }
