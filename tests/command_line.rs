@@ -15,7 +15,7 @@ use firsthit::{Image, Kernel, Scene, Stage, scene};
 use tempfile::TempDir;
 
 use crate::helpers::{
-    self, bits, exr_bits, open, printed, program, program_after, succeeded, text, trace,
+    self, bits, exr_bits, names, open, printed, program, program_after, succeeded, text, trace,
 };
 
 /// Runs the program in `folder` with the words of `line`; it must succeed and say nothing.
@@ -28,16 +28,6 @@ fn done(folder: &TempDir, line: &str) {
 fn failed(output: &Output, what: &str) -> String {
     assert_eq!(text(&output.stdout), "", "{what}");
     helpers::failed(output, 1, what)
-}
-
-/// The names in `folder`, hidden ones too, in order.
-fn names(folder: &TempDir) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 fn folder() -> TempDir {

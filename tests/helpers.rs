@@ -25,7 +25,7 @@ pub(crate) use program::program_after;
 pub(crate) use program::ways;
 #[cfg(feature = "program")]
 pub(crate) use program::{
-    PROGRAM, failed, open, printed, program, skipped, succeeded, text, words,
+    PROGRAM, failed, names, open, printed, program, skipped, succeeded, text, words,
 };
 pub(crate) use random::Random;
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use crate::helpers::{
-    PROGRAM, failed, program, program_after, succeeded, text, ways, with_fault, words,
+    PROGRAM, failed, names, program, program_after, succeeded, text, ways, with_fault, words,
 };
 
 fn folder() -> TempDir {
@@ -82,14 +82,6 @@ fn memory_that_is_refused_is_one_line() {
         }
         assert!(refused > 0, "{line}");
     }
-}
-
-fn names(folder: &TempDir) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<_> = names.collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -53,16 +53,9 @@ fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64
 
 /// The same in every stage.
 fn compare_all(scene: &Scene, alpha: f64, size: u32) {
-    let stages = [
-        Stage::Image,
-        Stage::Spheres,
-        Stage::Tetrahedron,
-        Stage::Shading,
-        Stage::Shadow,
-        Stage::Reflection,
-    ];
+    // The animation is the reflection at one angle after another, and that is compared.
+    let [stages @ .., _] = Stage::ALL;
     compare(scene, stages, alpha, size);
-    // The animation is the reflection at one angle after another, and that has been compared.
     for kernel in KERNELS {
         let frame = |stage| trace_with_decisions(kernel, scene, stage, alpha, size);
         let [reflection, animation] = [Stage::Reflection, Stage::Animation].map(frame);

@@ -38,6 +38,16 @@ pub(crate) fn ways() -> Vec<&'static str> {
     open.map(Through::name).collect()
 }
 
+/// The names in `folder`, hidden ones too, in order.
+pub(crate) fn names(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_firsthit");
 
 /// The words of `line` as arguments; an empty line has none.

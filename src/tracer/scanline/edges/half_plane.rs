@@ -122,8 +122,8 @@ impl HalfPlane {
 
     /// Brings in what it has of as many rows as there are lanes.
     #[inline(always)]
-    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, reaches: &mut RunEnclosure<S::f64s>) {
-        let RunEnclosure { possible, certain } = reaches;
+    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, run: &mut RunEnclosure<S::f64s>) {
+        let RunEnclosure { possible, certain } = run;
         match &self.crossing {
             Crossing::Right(root) => {
                 let place = y * root.per_row + root.at;

@@ -57,7 +57,7 @@ impl<'f> Region<'f> {
         let mut spans = Spans::NONE;
         for first in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, first) + grid.place(row);
-            let mut reaches = match &self.ellipse {
+            let mut run = match &self.ellipse {
                 Some(ellipse) => ellipse.enclose(simd, y, grid),
                 None => {
                     let zero = S::f64s::splat(simd, 0.0);
@@ -69,11 +69,11 @@ impl<'f> Region<'f> {
                 }
             };
             for half_plane in self.half_planes {
-                half_plane.cut(simd, y, &mut reaches);
+                half_plane.cut(simd, y, &mut run);
             }
             let is_crossed =
                 y.simd_ge(grid.place(self.rows.0)) & y.simd_lt(grid.place(self.rows.1));
-            let RunEnclosure { possible, certain } = reaches;
+            let RunEnclosure { possible, certain } = run;
             let possible = [
                 grid.ceil_all::<S>(possible[0]),
                 grid.count_all::<S>(possible[1]),

@@ -76,7 +76,7 @@ pub(crate) struct DepthTest<'p> {
     pub(crate) rest: Visible,
 }
 
-/// The same, as it is kept: where its solids end among those of all contests.
+/// The same, as it is kept: where its solids end among those of all tests.
 struct Stored {
     mirrored: bool,
     from: usize,
@@ -85,7 +85,7 @@ struct Stored {
     rest: Visible,
 }
 
-/// More contests than this are forgotten, and found anew where they are still needed.
+/// More tests than this are forgotten, and found anew where they are still needed.
 const MANY: usize = 4096;
 
 /// What rows have to decide.
@@ -101,7 +101,7 @@ impl DepthTests {
         self.solids.clear();
     }
 
-    /// Whether there are so many contests that the oldest are hardly needed any more.
+    /// Whether there are so many tests that the oldest are hardly needed any more.
     pub(crate) fn is_full(&self) -> bool {
         self.tests.len() > MANY
     }
