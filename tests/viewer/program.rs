@@ -130,7 +130,10 @@ impl Program {
     /// Waits until it has ended: its status, and all of its standard error.
     pub fn ended(&mut self) -> (ExitStatus, String) {
         let status = wait_for("the program's end", || self.process.try_wait().unwrap());
-        (status, self.errors.take().unwrap().join().unwrap())
+        let errors = self.errors.take().unwrap().join().unwrap();
+        // On a machine with much else to do that may be said of any driver.
+        let slow = "firsthit: waits for the OpenGL driver: Ctrl+C ends it\n";
+        (status, errors.replace(slow, ""))
     }
 
     /// Waits until it has ended well: traces, uploads and draws in all.
