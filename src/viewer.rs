@@ -10,6 +10,7 @@ mod app;
 mod canvas;
 mod clipboard;
 mod comparison;
+mod content;
 mod error;
 mod frames;
 mod information;

@@ -4,17 +4,17 @@ mod actions;
 mod events;
 mod facts;
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
 use crate::screen::room;
-use crate::{Image, Kernel, Stage};
+use crate::{Kernel, Stage};
 
 use super::clipboard::Clipboard;
-use super::comparison::{self, Comparing, Errors};
+use super::comparison::{self, Comparing};
+use super::content::{Content, Redisplay};
 use super::frames::Meter;
 use super::information::Times;
 use super::playback::Playback;
@@ -22,17 +22,13 @@ use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
 use super::sheet::Sheet;
-use super::tracing::{Frame, Reply, Studio, Traced, Tracing};
+use super::tracing::{Frame, Reply, Studio, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets
 /// the old one.
 const PATIENCE: Duration = Duration::from_millis(100);
-
-/// A picture that took no longer is traced over before the next one is there, which takes about as
-/// long.
-const SOON: Duration = Duration::from_millis(20);
 
 /// How soon to look again for a window that nothing can be drawn on and that does not say when that
 /// ends.
@@ -65,13 +61,9 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         report,
         tracing,
         comparing,
-        errors: None,
-        shown: None,
-        picture: None,
+        content: Content::default(),
         view: None,
         clipboard: None,
-        uploaded: false,
-        texture: None,
         overdue: false,
         next_frame: started,
         modifiers: ModifiersState::empty(),
@@ -103,20 +95,11 @@ struct App<'a> {
     report: &'a mut dyn FnMut(Event),
     tracing: Tracing,
     comparing: Comparing,
-    /// `None` where the picture is shown instead of its errors.
-    errors: Option<Errors>,
-    /// The picture that came last.
-    shown: Option<Traced>,
-    /// Its samples; `None` after they were given back, to be traced over.
-    picture: Option<Arc<Image>>,
+    content: Content,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     view: Option<View>,
     /// As long as there is a window.
     clipboard: Option<Clipboard>,
-    /// The texture holds what is to be shown.
-    uploaded: bool,
-    /// The number of the traced picture that it holds, if it holds one.
-    texture: Option<u64>,
     /// The window is drawn again without waiting for the picture that is on its way: it took too
     /// long, or something else changed.
     overdue: bool,
@@ -173,7 +156,7 @@ impl App<'_> {
     /// The picture that should be shown is not there yet.
     fn waiting(&self) -> bool {
         self.tracing
-            .is_behind(self.shown.as_ref().map(|shown| shown.frame))
+            .is_behind(self.content.traced().map(|traced| traced.frame))
     }
 
     /// Asks for the next picture: of the present α, which moves on at `now` if the animation plays
@@ -181,57 +164,30 @@ impl App<'_> {
     fn advance(&mut self, now: Instant) {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
-            self.give_back();
+            // The next picture is traced over this one, unless its pixels are looked at.
+            if !self.sheet.names_pixels() {
+                self.content.give_back();
+            }
         }
         self.tracing.wish(self.wanted());
-    }
-
-    /// Lets the next picture be traced over the one that the texture holds, unless that is looked
-    /// at, or may be wanted again before the next one is there.
-    fn give_back(&mut self) {
-        let is_soon = |shown: &Traced| shown.time < SOON;
-        if self.uploaded
-            && self.errors.is_none()
-            && !self.sheet.names_pixels()
-            && self.shown.as_ref().is_some_and(is_soon)
-        {
-            self.picture = None;
-        }
     }
 
     /// Brings what is to be shown into the texture, unless it is there already or cannot be had.
     /// Returns whether it was brought.
     fn upload(&mut self) -> Result<bool, ViewerError> {
-        let (Some(view), Some(shown), false) = (&mut self.view, &self.shown, self.uploaded) else {
+        let (Some(view), Some((image, rows))) = (&mut self.view, self.content.to_upload()) else {
             return Ok(false);
-        };
-        let all = 0..self.size;
-        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
-        let (image, rows, texture) = match (compared, &self.picture) {
-            (Some(compared), _) => (&compared.image, all, None),
-            (None, Some(picture)) => {
-                let follows = self.texture.is_some_and(|last| last + 1 == shown.number);
-                let rows = if follows { shown.changed.clone() } else { all };
-                (picture, rows, Some(shown.number))
-            }
-            (None, None) => return Ok(false),
         };
         self.times.upload = view.upload(image, rows, self.sheet.information)?;
         self.counts.uploads += 1;
-        self.texture = texture;
-        self.uploaded = true;
+        self.content.uploaded();
         Ok(true)
     }
 
     /// Looks whether the driver shows what is uploaded, where it was not looked at in this size.
     fn examine(&mut self) {
-        let compared = self.errors.as_ref().and_then(|errors| errors.done.as_ref());
-        let image = compared.map(|compared| &*compared.image);
-        if let (true, Some(view), Some(image)) = (
-            self.uploaded,
-            &mut self.view,
-            image.or(self.picture.as_deref()),
-        ) && let Some(differs) = view.examine(image)
+        if let (Some(view), Some(image)) = (&mut self.view, self.content.in_texture())
+            && let Some(differs) = view.examine(image)
         {
             let renderer = view.renderer().to_owned();
             (self.report)(Event::Differs { renderer, differs });
@@ -251,7 +207,7 @@ impl App<'_> {
             }
             return Ok(());
         }
-        if self.counts.draws == 0 && self.shown.is_some() {
+        if self.counts.draws == 0 && self.content.traced().is_some() {
             // Opening the window was no part of the animation.
             self.playback.count_from(start - self.frame_time);
         }
@@ -261,7 +217,8 @@ impl App<'_> {
         if !self.is_last() {
             self.advance(start);
         }
-        if self.uploaded && !is_new && self.waiting() && !overdue {
+        let redisplay = self.content.redisplay(is_new, self.waiting(), overdue);
+        if redisplay == Redisplay::Wait {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
@@ -277,19 +234,14 @@ impl App<'_> {
         let Some(view) = &mut self.view else {
             return Ok(());
         };
-        if !self.uploaded {
-            if overdue && self.shown.is_none() {
-                view.clear()?;
-            } else {
-                event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
-            }
-            return Ok(());
+        if redisplay == Redisplay::Clear {
+            return view.clear();
         }
         let waits = self.sheet.information;
         let window = (view.surface(), view.layout());
         let boards = self.sheet.boards(window, view.cell(), &facts);
         let Some(draw) = view.draw((&marks, boards), waits)? else {
-            self.lose_texture();
+            self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());
         };
@@ -307,11 +259,7 @@ impl App<'_> {
         }
         self.next_frame = start + self.frame_time;
         // The time that a comparison takes is seen to pass.
-        let comparing = self
-            .errors
-            .as_ref()
-            .filter(|errors| errors.is_busy())
-            .map(|_| start + PATIENCE);
+        let comparing = self.content.is_comparing().then(|| start + PATIENCE);
         if let Some(end) = change.into_iter().chain(comparing).min() {
             event_loop.set_control_flow(ControlFlow::WaitUntil(end));
         }
@@ -372,14 +320,12 @@ impl App<'_> {
     fn receive(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         while let Some(reply) = self.tracing.reply() {
             match reply {
-                Reply::Traced(traced, image) => {
+                Reply::Traced(traced, samples) => {
                     // A stage that was left meanwhile is not shown any more; an angle is, or one
                     // that moves fast would never be seen.
                     let Frame { stage, kernel, .. } = traced.frame;
                     if (stage, kernel) == (self.stage, self.kernel) {
-                        self.picture = Some(image);
-                        self.shown = Some(traced);
-                        self.uploaded = false;
+                        self.content.picture_came(traced, samples, Instant::now());
                         self.draw_in_time(event_loop);
                     }
                 }
@@ -394,7 +340,9 @@ impl App<'_> {
                     (self.report)(Event::Inspected(text));
                     self.touch();
                 }
-                Reply::Refused(_, error) if self.shown.is_none() => return Err(error.into()),
+                Reply::Refused(_, error) if self.content.traced().is_none() => {
+                    return Err(error.into());
+                }
                 Reply::Refused(frame, error) => {
                     self.sheet.say(error.to_string());
                     if self.kernel == frame.kernel {
@@ -409,17 +357,14 @@ impl App<'_> {
         }
         self.compare();
         while let Some(reply) = self.comparing.reply() {
-            let Some(errors) = &mut self.errors else {
+            if !self.content.shows_errors() {
                 continue;
-            };
+            }
             match reply {
                 comparison::Reply::Begun(kernel, progress) => {
-                    errors.tracing = Some((kernel, progress));
+                    self.content.comparison_traces(kernel, progress);
                 }
-                comparison::Reply::Done(compared) => {
-                    errors.done = Some(compared);
-                    self.uploaded = false;
-                }
+                comparison::Reply::Done(compared) => self.content.comparison_came(compared),
                 comparison::Reply::Failed(error) => return Err(error),
             }
             self.touch();
@@ -429,7 +374,7 @@ impl App<'_> {
 
     /// Something but the picture looks different now.
     fn touch(&mut self) {
-        let open = self.sheet.has_panel() || self.errors.is_some();
+        let open = self.sheet.has_panel() || self.content.shows_errors();
         if let Some(view) = &mut self.view {
             view.show_panel(open);
         }
@@ -439,12 +384,8 @@ impl App<'_> {
 
     /// Asks for the errors of the picture that is shown, if they are to be seen.
     fn compare(&mut self) {
-        if let (Some(errors), Some(shown)) = (&mut self.errors, &self.shown) {
-            let wanted = Some(shown.frame);
-            if errors.begun.is_none_or(|(frame, _)| Some(frame) != wanted) {
-                errors.begun = Some((shown.frame, Instant::now()));
-            }
-            self.comparing.wish(shown.frame);
+        if let Some(frame) = self.content.frame_to_compare() {
+            self.comparing.wish(frame);
         }
     }
 
@@ -483,15 +424,9 @@ impl App<'_> {
         self.clipboard = Some(Clipboard::beside(view.window()));
         self.view = Some(view);
         (self.report)(Event::Opened);
-        self.lose_texture();
+        self.content.lose_texture();
         self.retitle();
         Ok(())
-    }
-
-    /// There is a new texture, with nothing in it.
-    fn lose_texture(&mut self) {
-        self.uploaded = false;
-        self.texture = None;
     }
 
     /// Ends the program where `result` is an error.

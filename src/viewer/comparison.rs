@@ -48,25 +48,33 @@ pub(super) enum Reply {
 }
 
 /// The error view, while it is shown.
-#[derive(Default)]
 pub(super) struct Errors {
-    /// The frame that is compared now or was compared last, and since when.
-    pub(super) begun: Option<(Frame, Instant)>,
-    /// The kernel whose picture is traced for it now, and how far that is.
+    /// Since when those of the present frame are to be shown.
+    pub(super) since: Instant,
+    /// The kernel whose picture was traced last for a comparison, and how far that is.
     pub(super) tracing: Option<(Kernel, Progress)>,
-    /// What the window shows.
+    /// The comparison that was done last, which the window shows.
     pub(super) done: Option<Compared>,
 }
 
 impl Errors {
-    /// Whether a comparison is going on.
-    pub(super) fn is_busy(&self) -> bool {
-        let done = self.done.as_ref().map(|compared| compared.frame);
-        self.begun.is_some_and(|(frame, _)| done != Some(frame))
+    /// None yet, and awaited from now on.
+    pub(super) fn since(now: Instant) -> Errors {
+        Errors {
+            since: now,
+            tracing: None,
+            done: None,
+        }
     }
 
-    /// What is seen, and how far the next comparison is, of pictures of `size` × `size` pixels.
-    pub(super) fn text(&self, size: u32) -> String {
+    /// Whether those of `frame` are not there yet.
+    pub(super) fn are_awaited(&self, frame: Frame) -> bool {
+        self.done.as_ref().map(|compared| compared.frame) != Some(frame)
+    }
+
+    /// What is seen, and how far the comparison of `frame` is, of pictures of `size` × `size`
+    /// pixels.
+    pub(super) fn text(&self, frame: Frame, size: u32) -> String {
         let mut lines = Vec::new();
         if let Some(compared) = &self.done {
             lines.push(format!(
@@ -79,7 +87,7 @@ impl Errors {
                 compared.largest,
             ));
         }
-        if let Some((frame, since)) = self.begun.filter(|_| self.is_busy()) {
+        if self.are_awaited(frame) {
             let tracing = self.tracing.as_ref().map(|(kernel, progress)| {
                 let percent = 100 * u64::from(progress.rows()) / u64::from(size.max(1));
                 format!(", tracing {} {percent} %", kernel.name())
@@ -88,7 +96,7 @@ impl Errors {
                 "comparing {}{} … {:.1} s",
                 frame.kernel.name(),
                 tracing.unwrap_or_default(),
-                since.elapsed().as_secs_f64()
+                self.since.elapsed().as_secs_f64()
             ));
         }
         lines.join("\n")
@@ -213,15 +221,12 @@ mod tests {
             alpha: 0.0,
             kernel: Kernel::Fast,
         };
-        let mut errors = Errors {
-            begun: Some((frame, Instant::now())),
-            ..Errors::default()
-        };
+        let mut errors = Errors::since(Instant::now());
         let mut begun = Vec::new();
         let compared = compare(frame, |kernel| {
             let progress = Progress::default();
             errors.tracing = Some((kernel, progress.clone()));
-            begun.push(errors.text(40));
+            begun.push(errors.text(frame, 40));
             progress.add(40);
             let (mut image, mut decisions) = (Image::new(40)?, vec![Decision::Background; 1600]);
             // One pixel that is decided wrongly, and one that is three steps off.
@@ -237,12 +242,12 @@ mod tests {
         assert!(begun[1].starts_with("comparing fast, tracing reference 0 % … "));
         assert!(
             errors
-                .text(40)
+                .text(frame, 40)
                 .starts_with("comparing fast, tracing reference 100 % … ")
         );
         errors.done = Some(compared);
         assert_eq!(
-            errors.text(40),
+            errors.text(frame, 40),
             "fast against reference\n\
              wrong pixels: 1 (green, single ones ringed)\n\
              misrounded samples: 2, at most 3 f32 steps off"

@@ -1,11 +1,12 @@
 //! What each action does.
 
+use std::time::Instant;
+
 use winit::event_loop::ActiveEventLoop;
 
 use super::App;
 use crate::image::Format;
 use crate::viewer::action::Action;
-use crate::viewer::comparison::Errors;
 use crate::{Kernel, Stage};
 
 /// α turned by an arrow key, in radians.
@@ -81,11 +82,7 @@ impl App<'_> {
 
     /// Shows the errors of the picture, or the picture again.
     fn toggle_errors(&mut self) {
-        self.errors = match self.errors {
-            Some(_) => None,
-            None => Some(Errors::default()),
-        };
-        self.uploaded = false;
+        self.content.toggle_errors(Instant::now());
         self.compare();
         self.touch();
     }
@@ -104,9 +101,9 @@ impl App<'_> {
     }
 
     fn save(&self, format: Format) {
-        let frame = match &self.shown {
+        let frame = match self.content.traced() {
             // What a person sees is what is saved, although the next picture is on its way.
-            Some(shown) if self.playing() => shown.frame,
+            Some(traced) if self.playing() => traced.frame,
             _ => self.wanted(),
         };
         self.tracing.save(frame, format);

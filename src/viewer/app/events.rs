@@ -189,8 +189,9 @@ impl App<'_> {
                 }
             }
             Gesture::Click { at } => {
-                if let (Some(pixel), Some(shown)) = (view.picture_pixel(at), &self.shown) {
-                    self.tracing.explain(shown.frame, pixel);
+                if let (Some(pixel), Some(traced)) = (view.picture_pixel(at), self.content.traced())
+                {
+                    self.tracing.explain(traced.frame, pixel);
                 }
                 return;
             }

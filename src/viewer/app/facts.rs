@@ -4,6 +4,7 @@ use super::App;
 use crate::Stage;
 use crate::viewer::action::Action;
 use crate::viewer::comparison::WRONG;
+use crate::viewer::content::Content;
 use crate::viewer::information::{information, name_pixel};
 use crate::viewer::sheet::{Facts, ring};
 use crate::viewer::window::Mark;
@@ -11,25 +12,25 @@ use crate::viewer::window::Mark;
 impl App<'_> {
     /// What the sheet says about the picture.
     pub(super) fn facts(&self) -> Facts {
-        let (Some(view), Some(shown)) = (&self.view, &self.shown) else {
+        let (Some(view), Some(traced)) = (&self.view, self.content.traced()) else {
             return Facts::default();
         };
         let mut facts = Facts::default();
         if self.sheet.information {
-            facts.information = information(shown, self.size, self.times);
+            facts.information = information(traced, self.size, self.times);
         }
         if self.sheet.names_pixels()
             && let Some(place) = self.pointer.place()
             && let Some(pixel) = view.picture_pixel(place)
         {
             // One that was given back a moment ago is followed by another.
-            if let Some(picture) = &self.picture {
-                facts.pixel = name_pixel(picture, pixel);
+            if let Some(samples) = self.content.samples() {
+                facts.pixel = name_pixel(samples, pixel);
             }
             facts.pointer = Some(view.place_of(place));
         }
-        if let Some(errors) = &self.errors {
-            facts.errors = Some(errors.text(self.size));
+        if let Content::Errors(_, errors) = &self.content {
+            facts.errors = Some(errors.text(traced.frame, self.size));
             let rings = errors.done.iter().flat_map(|compared| &compared.rings);
             facts.rings.extend(rings);
         }
@@ -39,7 +40,7 @@ impl App<'_> {
                 self.stage == Stage::Animation && self.playback.paused(),
                 Action::Pause,
             ),
-            (self.errors.is_some(), Action::Errors),
+            (self.content.shows_errors(), Action::Errors),
             (self.sheet.information, Action::Information),
             (self.sheet.keys_are_shown(), Action::Help),
         ] {
