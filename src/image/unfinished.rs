@@ -16,8 +16,9 @@ use tempfile::Builder;
 
 /// A file on its way to its name. Dropped, it is gone.
 pub(super) enum Unfinished {
+    /// One without a name, in this folder.
     #[cfg(target_os = "linux")]
-    Nameless,
+    Nameless(PathBuf),
     Named(Named),
 }
 
@@ -27,19 +28,17 @@ impl Unfinished {
     pub(super) fn create(folder: &Path) -> io::Result<(Unfinished, File)> {
         #[cfg(target_os = "linux")]
         if let Some(file) = nameless::create(folder) {
-            return Ok((Unfinished::Nameless, file));
+            return Ok((Unfinished::Nameless(folder.to_owned()), file));
         }
         Named::create(folder).map(|(named, file)| (Unfinished::Named(named), file))
     }
 
-    /// Gives `file`, which was created with this, its name in the same `folder`. What has that name
-    /// already is replaced.
-    pub(super) fn persist(self, file: File, folder: &Path, target: &Path) -> io::Result<()> {
-        #[cfg(not(target_os = "linux"))]
-        let _ = folder;
+    /// Gives `file`, which was created with this, the name `target` in the same folder. What has
+    /// that name already is replaced.
+    pub(super) fn persist(self, file: File, target: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
-            Unfinished::Nameless => nameless::persist(&file, folder, target),
+            Unfinished::Nameless(folder) => nameless::persist(&file, &folder, target),
             Unfinished::Named(named) => {
                 // Some systems rename no file that is open.
                 drop(file);
@@ -225,7 +224,7 @@ mod tests {
                 let (unfinished, mut file) = start(folder.path(), as_everywhere);
                 file.write_all(b"new").unwrap();
                 assert_eq!(fs::read_to_string(&target).ok().as_deref(), old);
-                unfinished.persist(file, folder.path(), &target).unwrap();
+                unfinished.persist(file, &target).unwrap();
                 assert_eq!(fs::read_to_string(&target).unwrap(), "new");
                 assert_eq!(names_in(folder.path()), ["a"], "{as_everywhere}");
             }
@@ -239,7 +238,7 @@ mod tests {
         for as_everywhere in [false, true] {
             let (unfinished, file) = start(folder.path(), as_everywhere);
             fs::create_dir(&target).unwrap();
-            assert!(unfinished.persist(file, folder.path(), &target).is_err());
+            assert!(unfinished.persist(file, &target).is_err());
             fs::remove_dir(&target).unwrap();
             assert_eq!(names_in(folder.path()), [""; 0], "{as_everywhere}");
         }

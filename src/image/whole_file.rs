@@ -90,11 +90,10 @@ impl WholeFile {
         }
         let persist = || {
             on_disk(self.file.sync_all())?;
-            let folder = folder(&self.target);
-            self.unfinished.persist(self.file, folder, &self.target)?;
+            self.unfinished.persist(self.file, &self.target)?;
             // Else the name might not outlive the power.
             #[cfg(unix)]
-            if let Ok(folder) = File::open(folder) {
+            if let Ok(folder) = File::open(folder(&self.target)) {
                 on_disk(folder.sync_all())?;
             }
             Ok(())
