@@ -3,8 +3,7 @@
 
 use std::ffi::c_void;
 
-use firsthit::image::display_byte;
-use firsthit::screen::{Offscreen, Path, ScreenError, Through, TimedScreen};
+use firsthit::screen::{Offscreen, ScreenError, Through};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use glutin::api::egl::device::Device;
 use glutin::api::egl::display::Display;
@@ -309,46 +308,6 @@ fn a_size_that_no_picture_has_is_refused() {
         for size in [0, 16_385, u32::MAX] {
             let error = Offscreen::open(through, size).err().unwrap();
             assert!(matches!(error, ScreenError::Image(_)), "{error}");
-        }
-    }
-}
-
-/// Both ways into a framebuffer of 8 bits show what [`display_byte`] says, so their times are those
-/// of the same work.
-#[test]
-fn the_timed_ways_show_the_same_bytes() {
-    let mut pictures = vec![image(64, |i| (i as f32 / 12288.0 * 1.5 - 0.2).to_bits())];
-    let mut traced = Image::new(64).unwrap();
-    Tracer::new(Kernel::default(), 0)
-        .unwrap()
-        .trace(&Scene::builtin(), Stage::Reflection, 0.3, &mut traced)
-        .unwrap();
-    pictures.push(traced);
-    for through in WAYS {
-        if open(through, 1).is_none() {
-            continue;
-        }
-        for path in Path::ALL {
-            let what = format!("{} {}", through.name(), path.name());
-            let mut screen = TimedScreen::open(through, path, 64).expect(&what);
-            assert!(screen.bytes().is_empty());
-            for picture in &pictures {
-                let cost = screen.show(picture, 0..64).expect(&what);
-                assert_eq!(cost.upload.is_zero(), path == Path::DrawPixels);
-                let pixels = picture.samples().chunks_exact(3);
-                let expected: Vec<u8> = pixels
-                    .flat_map(|pixel| {
-                        let [red, green, blue] = [0, 1, 2].map(|i| display_byte(pixel[i]));
-                        [red, green, blue, 255]
-                    })
-                    .collect();
-                assert!(screen.bytes() == expected, "{what}");
-            }
-            let other = Image::new(63).unwrap();
-            assert!(matches!(
-                screen.show(&other, 0..64),
-                Err(ScreenError::Size { .. })
-            ));
         }
     }
 }

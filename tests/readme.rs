@@ -7,10 +7,9 @@ use std::path::Path;
 
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
-use firsthit::report::HARD_SCENES;
 use firsthit::{Kernel, Scene, Stage, Tracer, viewer};
 
-use crate::helpers::{hard_scene, trace};
+use crate::helpers::{hard_scene, hard_scenes, trace};
 
 /// A picture under tests/images: its name, the scene's name in tests/scenes or none for the
 /// built-in scene, N, stage, frame and kernel.
@@ -127,7 +126,7 @@ fn its_plot_is_drawn_by_this_program() {
         .filter_map(|node| node.text())
         .map(str::trim)
         .collect();
-    let hard = format!("{} hard scenes", HARD_SCENES.len());
+    let hard = format!("{} hard scenes", hard_scenes().len());
     for label in [
         "Built-in scene",
         &hard,

@@ -2,17 +2,14 @@
 //! draws it, and leaves no half file.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 use firsthit::camera::frame_angle;
-use firsthit::report::{Errors, HARD_SCENES, NamedScene, WrongPixels};
-use firsthit::tracer::{Decision, InDoubt, Seen};
-use firsthit::{Image, Kernel, Scene, Stage};
+use firsthit::{Kernel, Scene, Stage};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::helpers::{self, printed, program, trace_with_decisions};
+use crate::helpers::{self, hard_scene_text, hard_scenes, printed, program, trace_with_decisions};
 
 /// What `firsthit report` with the words of `line` printed; it must have succeeded and said nothing
 /// else.
@@ -37,113 +34,6 @@ fn json(folder: &TempDir, name: &str) -> Value {
 
 fn is_empty(folder: &TempDir) -> bool {
     folder.path().read_dir().unwrap().next().is_none()
-}
-
-const SPHERE: Seen = Seen {
-    solid: 0,
-    face: None,
-    in_shadow: false,
-};
-const FACE: Seen = Seen {
-    solid: 2,
-    face: Some(1),
-    in_shadow: false,
-};
-
-#[test]
-fn a_wrong_pixel_is_counted_by_the_first_thing_that_is_wrong() {
-    use Decision::{Background, Mirrored, Quadrant, Solid, Surface, SurfaceInShadow};
-    let dark = |seen| Seen {
-        in_shadow: true,
-        ..seen
-    };
-    let face = |face| Seen {
-        face: Some(face),
-        ..FACE
-    };
-    let kinds = [
-        // Right: not counted.
-        (Solid(FACE), Solid(FACE), [0, 0, 0, 0]),
-        (Mirrored(SPHERE), Mirrored(SPHERE), [0, 0, 0, 0]),
-        // Another thing, whatever else is wrong with it.
-        (Background, Solid(SPHERE), [1, 0, 0, 0]),
-        (Solid(dark(FACE)), Solid(SPHERE), [1, 0, 0, 0]),
-        (Surface, Solid(SPHERE), [1, 0, 0, 0]),
-        (Mirrored(SPHERE), Solid(SPHERE), [1, 0, 0, 0]),
-        (Background, SurfaceInShadow, [1, 0, 0, 0]),
-        (Quadrant(0), Quadrant(1), [1, 0, 0, 0]),
-        // Another face, in shadow or not.
-        (Solid(face(3)), Solid(FACE), [0, 1, 0, 0]),
-        (Solid(dark(face(3))), Solid(FACE), [0, 1, 0, 0]),
-        // Shadows, on solids and on the surface.
-        (Solid(dark(FACE)), Solid(FACE), [0, 0, 1, 0]),
-        (SurfaceInShadow, Surface, [0, 0, 1, 0]),
-        (Mirrored(SPHERE), SurfaceInShadow, [0, 0, 1, 0]),
-        // What the surface mirrors.
-        (Surface, Mirrored(SPHERE), [0, 0, 0, 1]),
-        (Mirrored(FACE), Mirrored(SPHERE), [0, 0, 0, 1]),
-        (Mirrored(face(0)), Mirrored(FACE), [0, 0, 0, 1]),
-        (Mirrored(dark(SPHERE)), Mirrored(SPHERE), [0, 0, 0, 1]),
-    ];
-    for (decision, truth, expected) in kinds {
-        for (decision, truth) in [(decision, truth), (truth, decision)] {
-            let mut wrong = WrongPixels::default();
-            wrong.add(decision, truth);
-            let WrongPixels {
-                solid,
-                face,
-                shadow,
-                mirror,
-            } = wrong;
-            assert_eq!(
-                [solid, face, shadow, mirror],
-                expected,
-                "{decision:?} for {truth:?}"
-            );
-            assert_eq!(wrong.total(), expected.iter().sum::<u64>());
-        }
-    }
-}
-
-#[test]
-fn known_errors_are_counted_as_they_are() {
-    let truth = Image::new(2).unwrap();
-    let true_decisions = [Decision::Background; 4];
-    let mut image = truth.clone();
-    // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel
-    // 2: a NaN.
-    image.samples_mut()[1] = f32::from_bits(3);
-    image.samples_mut()[4] = 0.75;
-    image.samples_mut()[8] = f32::NAN;
-    let mut decisions = true_decisions;
-    decisions[1] = Decision::Surface;
-    let in_doubt = InDoubt {
-        double_double: 5,
-        arbitrary: 1,
-    };
-    let mut errors = Errors::default();
-    for _ in 0..2 {
-        errors.add((&image, &decisions), (&truth, &true_decisions), in_doubt);
-    }
-    // Two frames: everything twice, the largest and the means once.
-    assert_eq!(errors.wrong_pixels.total(), 2);
-    assert_eq!((errors.all.samples, errors.all.wrong), (24, 6));
-    assert_eq!(errors.all.max_abs, 0.75);
-    assert_eq!(errors.all.nans, [2, 0]);
-    assert_eq!(errors.all.eight_bit, 2);
-    let mean = (0.75 + f64::from(f32::from_bits(3))) / 11.0;
-    assert!((errors.all.mean_abs() - mean).abs() < 1e-15);
-    // Steps are counted where the decision is right.
-    let rightly = &errors.decided_rightly;
-    assert_eq!(
-        (rightly.samples, rightly.wrong, rightly.max_steps),
-        (18, 4, 3)
-    );
-    assert_eq!(rightly.mean_steps(), 3.0 / 8.0);
-    assert_eq!(
-        (errors.in_doubt.double_double, errors.in_doubt.arbitrary),
-        (10, 2)
-    );
 }
 
 /// The errors of a kernel over the first two frames of the built-in scene at N = 24, counted
@@ -292,7 +182,7 @@ fn the_plot_is_xml_and_shows_every_kernel_and_every_group() {
     let folder = tempfile::tempdir().unwrap();
     // A name that XML would take for something else.
     let name = "a&b<c>.toml";
-    std::fs::write(folder.path().join(name), HARD_SCENES[0].1).unwrap();
+    std::fs::write(folder.path().join(name), hard_scene_text("along_faces")).unwrap();
     report(
         &folder,
         &format!(
@@ -363,27 +253,6 @@ fn report_nothing(folder: &TempDir) {
 }
 
 #[test]
-fn the_hard_scenes_are_those_of_the_stability_suite() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes");
-    let mut files: Vec<(String, String)> = folder
-        .read_dir()
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .map(|path| {
-            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-            (name, std::fs::read_to_string(path).unwrap())
-        })
-        .collect();
-    files.sort();
-    let listed = HARD_SCENES
-        .iter()
-        .map(|&(name, text)| (name.to_owned(), text.to_owned()));
-    assert!(listed.eq(files));
-    // Each of them is a scene.
-    assert_eq!(NamedScene::hard().count(), HARD_SCENES.len());
-}
-
-#[test]
 fn hard_scenes_join_the_built_in_one() {
     let folder = tempfile::tempdir().unwrap();
     report(
@@ -393,10 +262,11 @@ fn hard_scenes_join_the_built_in_one() {
     let report = json(&folder, "r.json");
     let rows = report["rows"].as_array().unwrap();
     let scenes = rows.iter().map(|row| row["scene"].as_str().unwrap());
-    let expected = HARD_SCENES.iter().map(|&(name, _)| name);
+    let hard = hard_scenes();
+    let expected = hard.iter().map(|name| &name[..]);
     assert!(scenes.eq(std::iter::once("builtin").chain(expected)));
     let plot = read(&folder, "p.svg");
-    let hard = format!("{} hard scenes", HARD_SCENES.len());
+    let hard = format!("{} hard scenes", hard.len());
     assert!(plot.contains("Built-in scene") && plot.contains(&hard));
 }
 

@@ -80,3 +80,116 @@ impl Errors {
         self.in_doubt.arbitrary += in_doubt.arbitrary;
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+mod tests {
+    use super::*;
+
+    const SPHERE: Seen = Seen {
+        solid: 0,
+        face: None,
+        in_shadow: false,
+    };
+    const FACE: Seen = Seen {
+        solid: 2,
+        face: Some(1),
+        in_shadow: false,
+    };
+
+    #[test]
+    fn a_wrong_pixel_is_counted_by_the_first_thing_that_is_wrong() {
+        use Decision::{Background, Mirrored, Quadrant, Solid, Surface, SurfaceInShadow};
+        let dark = |seen| Seen {
+            in_shadow: true,
+            ..seen
+        };
+        let face = |face| Seen {
+            face: Some(face),
+            ..FACE
+        };
+        let kinds = [
+            // Right: not counted.
+            (Solid(FACE), Solid(FACE), [0, 0, 0, 0]),
+            (Mirrored(SPHERE), Mirrored(SPHERE), [0, 0, 0, 0]),
+            // Another thing, whatever else is wrong with it.
+            (Background, Solid(SPHERE), [1, 0, 0, 0]),
+            (Solid(dark(FACE)), Solid(SPHERE), [1, 0, 0, 0]),
+            (Surface, Solid(SPHERE), [1, 0, 0, 0]),
+            (Mirrored(SPHERE), Solid(SPHERE), [1, 0, 0, 0]),
+            (Background, SurfaceInShadow, [1, 0, 0, 0]),
+            (Quadrant(0), Quadrant(1), [1, 0, 0, 0]),
+            // Another face, in shadow or not.
+            (Solid(face(3)), Solid(FACE), [0, 1, 0, 0]),
+            (Solid(dark(face(3))), Solid(FACE), [0, 1, 0, 0]),
+            // Shadows, on solids and on the surface.
+            (Solid(dark(FACE)), Solid(FACE), [0, 0, 1, 0]),
+            (SurfaceInShadow, Surface, [0, 0, 1, 0]),
+            (Mirrored(SPHERE), SurfaceInShadow, [0, 0, 1, 0]),
+            // What the surface mirrors.
+            (Surface, Mirrored(SPHERE), [0, 0, 0, 1]),
+            (Mirrored(FACE), Mirrored(SPHERE), [0, 0, 0, 1]),
+            (Mirrored(face(0)), Mirrored(FACE), [0, 0, 0, 1]),
+            (Mirrored(dark(SPHERE)), Mirrored(SPHERE), [0, 0, 0, 1]),
+        ];
+        for (decision, truth, expected) in kinds {
+            for (decision, truth) in [(decision, truth), (truth, decision)] {
+                let mut wrong = WrongPixels::default();
+                wrong.add(decision, truth);
+                let WrongPixels {
+                    solid,
+                    face,
+                    shadow,
+                    mirror,
+                } = wrong;
+                assert_eq!(
+                    [solid, face, shadow, mirror],
+                    expected,
+                    "{decision:?} for {truth:?}"
+                );
+                assert_eq!(wrong.total(), expected.iter().sum::<u64>());
+            }
+        }
+    }
+
+    #[test]
+    fn known_errors_are_counted_as_they_are() {
+        let truth = Image::new(2).unwrap();
+        let true_decisions = [Decision::Background; 4];
+        let mut image = truth.clone();
+        // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel
+        // 2: a NaN.
+        image.samples_mut()[1] = f32::from_bits(3);
+        image.samples_mut()[4] = 0.75;
+        image.samples_mut()[8] = f32::NAN;
+        let mut decisions = true_decisions;
+        decisions[1] = Decision::Surface;
+        let in_doubt = InDoubt {
+            double_double: 5,
+            arbitrary: 1,
+        };
+        let mut errors = Errors::default();
+        for _ in 0..2 {
+            errors.add((&image, &decisions), (&truth, &true_decisions), in_doubt);
+        }
+        // Two frames: everything twice, the largest and the means once.
+        assert_eq!(errors.wrong_pixels.total(), 2);
+        assert_eq!((errors.all.samples, errors.all.wrong), (24, 6));
+        assert_eq!(errors.all.max_abs, 0.75);
+        assert_eq!(errors.all.nans, [2, 0]);
+        assert_eq!(errors.all.eight_bit, 2);
+        let mean = (0.75 + f64::from(f32::from_bits(3))) / 11.0;
+        assert!((errors.all.mean_abs() - mean).abs() < 1e-15);
+        // Steps are counted where the decision is right.
+        let rightly = &errors.decided_rightly;
+        assert_eq!(
+            (rightly.samples, rightly.wrong, rightly.max_steps),
+            (18, 4, 3)
+        );
+        assert_eq!(rightly.mean_steps(), 3.0 / 8.0);
+        assert_eq!(
+            (errors.in_doubt.double_double, errors.in_doubt.arbitrary),
+            (10, 2)
+        );
+    }
+}

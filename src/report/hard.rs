@@ -49,3 +49,33 @@ pub const HARD_SCENES: &[(&str, &str)] = scenes! {
     "touching_solids"
     "wide_light"
 };
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::report::NamedScene;
+
+    #[test]
+    fn the_hard_scenes_are_those_of_the_stability_suite() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes");
+        let mut files: Vec<(String, String)> = folder
+            .read_dir()
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .map(|path| {
+                let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+                (name, std::fs::read_to_string(path).unwrap())
+            })
+            .collect();
+        files.sort();
+        let listed = HARD_SCENES
+            .iter()
+            .map(|&(name, text)| (name.to_owned(), text.to_owned()));
+        assert!(listed.eq(files));
+        // Each of them is a scene.
+        assert_eq!(NamedScene::hard().count(), HARD_SCENES.len());
+    }
+}

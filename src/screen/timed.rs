@@ -260,3 +260,64 @@ impl Drop for TimedScreen {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::explicit_write,
+    reason = "a test stops at the first surprise, and says what it leaves out"
+)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+    use crate::image::display_byte;
+
+    /// A picture whose samples grow by equal steps in this order, from below 0 to above 1.
+    fn ramp(order: impl Fn(usize) -> usize) -> Image {
+        let mut image = Image::new(64).unwrap();
+        for (i, sample) in image.samples_mut().iter_mut().enumerate() {
+            *sample = order(i) as f32 / 12288.0 * 1.5 - 0.2;
+        }
+        image
+    }
+
+    /// Both show what [`display_byte`] says, so their times are those of the same work.
+    #[test]
+    fn both_paths_show_the_same_bytes() {
+        // The second has another value at every sample.
+        let pictures = [ramp(|i| i), ramp(|i| 12287 - i)];
+        for through in [Through::Egl, Through::OsMesa] {
+            for path in Path::ALL {
+                let what = format!("{} {}", through.name(), path.name());
+                let mut screen = match TimedScreen::open(through, path, 64) {
+                    Err(error @ ScreenError::Missing { .. }) => {
+                        assert!(std::env::var_os("CI").is_none(), "{error}");
+                        writeln!(std::io::stderr(), "skipped: {error}").unwrap();
+                        continue;
+                    }
+                    opened => opened.expect(&what),
+                };
+                assert!(screen.bytes().is_empty());
+                for picture in &pictures {
+                    let cost = screen.show(picture, 0..64).expect(&what);
+                    assert_eq!(cost.upload.is_zero(), path == Path::DrawPixels);
+                    let pixels = picture.samples().chunks_exact(3);
+                    let expected: Vec<u8> = pixels
+                        .flat_map(|pixel| {
+                            let [red, green, blue] = [0, 1, 2].map(|i| display_byte(pixel[i]));
+                            [red, green, blue, 255]
+                        })
+                        .collect();
+                    assert!(screen.bytes() == expected, "{what}");
+                }
+                let other = Image::new(63).unwrap();
+                assert!(matches!(
+                    screen.show(&other, 0..64),
+                    Err(ScreenError::Size { .. })
+                ));
+            }
+        }
+    }
+}
