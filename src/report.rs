@@ -21,27 +21,24 @@ mod pipeline;
 mod plot;
 mod table;
 
-use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::Path;
-use std::thread;
 
 use crate::camera::frame_angle;
 use crate::image::whole_file::WholeFile;
 use crate::image::{ImageError, SaveError};
 use crate::tracer::{Decision, TraceError};
 use crate::{Image, Kernel, Scene, Stage, Tracer};
-pub use errors::{Errors, WrongPixels};
-pub use hard::HARD_SCENES;
-pub use machine::Machine;
-use measure::Filler;
-pub use measure::{Spread, Timing};
-pub use pipeline::Pipeline;
+use errors::Errors;
+use hard::HARD_SCENES;
+use machine::{Machine, cores};
+use measure::{Filler, Spread, Timing};
+use pipeline::{Frames, Pipeline};
 pub use plot::PlotError;
 
 /// Where a scene comes from; the plot has a panel for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Group {
+enum Group {
     /// The document's scene.
     Builtin,
     /// A scene file.
@@ -53,12 +50,9 @@ pub enum Group {
 /// A scene with the name that the report gives it.
 #[derive(Clone, Debug)]
 pub struct NamedScene {
-    /// Its name.
-    pub name: String,
-    /// Where it comes from.
-    pub group: Group,
-    /// The scene.
-    pub scene: Scene,
+    name: String,
+    group: Group,
+    scene: Scene,
 }
 
 impl NamedScene {
@@ -69,6 +63,12 @@ impl NamedScene {
             group: Group::Builtin,
             scene: Scene::builtin(),
         }
+    }
+
+    /// The scene of a file, under the name `name`.
+    pub fn of_file(name: String, scene: Scene) -> NamedScene {
+        let group = Group::File;
+        NamedScene { name, group, scene }
     }
 
     /// Every scene of the stability suite.
@@ -111,46 +111,42 @@ pub struct Progress<'a> {
 }
 
 /// What was measured.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Report {
-    /// On what.
-    pub machine: Machine,
+    machine: Machine,
     /// N.
-    pub size: u32,
+    size: u32,
     /// The frames of the animation.
-    pub frames: RangeInclusive<u64>,
+    frames: RangeInclusive<u64>,
     /// The most threads.
-    pub threads: usize,
+    threads: usize,
     /// How the picture was filled, with one thread and with the most, for people.
-    pub fills: Vec<String>,
+    fills: Vec<String>,
     /// Each kernel on each scene in each stage.
-    pub rows: Vec<Row>,
+    rows: Vec<Row>,
     /// What it costs to display a frame, once that is measured.
-    pub pipelines: Vec<Pipeline>,
+    pipelines: Vec<Pipeline>,
 }
 
 /// A kernel on a scene in a stage.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+#[derive(Clone, Debug)]
+struct Row {
     /// The scene's name.
-    pub scene: String,
-    /// Where the scene comes from.
-    pub group: Group,
-    /// The stage.
-    pub stage: Stage,
-    /// The kernel.
-    pub kernel: Kernel,
+    scene: String,
+    group: Group,
+    stage: Stage,
+    kernel: Kernel,
     /// What was measured, or why the kernel refuses the scene.
-    pub measured: Result<Measured, String>,
+    measured: Result<Measured, String>,
 }
 
 /// Times and errors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+#[derive(Clone, Debug)]
+struct Measured {
     /// With one thread, then with the most, if they are more.
-    pub timings: Vec<Timing>,
+    timings: Vec<Timing>,
     /// Over all frames.
-    pub errors: Errors,
+    errors: Errors,
 }
 
 /// A report that cannot be made.
@@ -163,11 +159,6 @@ pub enum ReportError {
     /// It cannot be traced, for another reason than that a kernel refuses a scene.
     #[error(transparent)]
     Trace(#[from] TraceError),
-}
-
-/// Threads that run at the same time.
-fn cores() -> usize {
-    thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 /// Measures the kernels as requested, and tells `progress` before each step.
@@ -375,24 +366,38 @@ pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
 }
 
 impl Report {
-    /// Measures what it costs to display a frame. `watch` is called with `true` before a driver
+    /// Measures what it costs to display a frame, traced by the first kernel on the first scene in
+    /// the first stage. `watch` is called with `true` before a driver
     /// does something for the first time, and with `false` after it: a driver may never come
     /// back.
     ///
     /// # Errors
-    /// As [`measure`]; where no driver can be had, that is told in [`Report::pipelines`].
+    /// As [`measure`]; where no driver can be had, [`Report::pipeline_table`] says so.
     pub fn measure_pipelines(
         &mut self,
         request: &Request,
         watch: &mut dyn FnMut(bool),
     ) -> Result<(), ReportError> {
         let mut image = Image::new(self.size)?;
-        self.pipelines = pipeline::measure(request, self.threads, &mut image, watch)?;
+        let mut kernels = request.kernels.iter();
+        if let (Some(named), Some(&stage), Some(&kernel)) = (
+            request.scenes.first(),
+            request.stages.first(),
+            kernels.find(|&&kernel| kernel != Kernel::Listing),
+        ) {
+            let frames = Frames {
+                tracer: Tracer::new(kernel, self.threads)?,
+                scene: &named.scene,
+                stage,
+                image: &mut image,
+            };
+            self.pipelines = pipeline::measure(frames, watch)?;
+        }
         Ok(())
     }
 
     /// How many frames a round has.
-    pub fn frame_count(&self) -> u64 {
+    fn frame_count(&self) -> u64 {
         (self.frames.end() - self.frames.start()).saturating_add(1)
     }
 

@@ -24,6 +24,7 @@ mod osmesa;
 mod placement;
 mod program;
 pub(crate) mod room;
+#[cfg(feature = "program")]
 mod timed;
 
 use std::ops::Range;
@@ -44,7 +45,8 @@ pub(crate) use layer::Layer;
 pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;
-pub use timed::{Cost, Path, TimedScreen};
+#[cfg(feature = "program")]
+pub(crate) use timed::{Cost, Path, TimedScreen};
 
 /// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let
 /// the desktop shine through.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 use firsthit::image::MAX_SIZE;
-use firsthit::report::{self, Group, NamedScene, Progress, Report, Request};
+use firsthit::report::{self, NamedScene, Progress, Report, Request};
 use firsthit::{Kernel, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -105,11 +105,8 @@ fn plot(report: &Report, path: &Path) -> Result<(), Failure> {
 fn request(arguments: &Arguments) -> Result<Request, Failure> {
     let mut scenes = Vec::new();
     for path in &arguments.scenes {
-        scenes.push(NamedScene {
-            name: path.display().to_string(),
-            group: Group::File,
-            scene: read_scene(path)?,
-        });
+        let name = path.display().to_string();
+        scenes.push(NamedScene::of_file(name, read_scene(path)?));
     }
     if scenes.is_empty() {
         scenes.push(NamedScene::builtin());

@@ -6,25 +6,25 @@ use crate::tracer::{Decision, InDoubt, Seen};
 
 /// Pixels with a wrong decision, each counted once: by the first thing that is wrong about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WrongPixels {
+pub(super) struct WrongPixels {
     /// Something else is seen: another solid, the surface, the background.
-    pub solid: u64,
+    pub(super) solid: u64,
     /// The right tetrahedron, but another of its faces.
-    pub face: u64,
+    pub(super) face: u64,
     /// The right thing, but in shadow instead of in light, or the other way round.
-    pub shadow: u64,
+    pub(super) shadow: u64,
     /// The surface in light, but it mirrors something else, or the same otherwise lit.
-    pub mirror: u64,
+    pub(super) mirror: u64,
 }
 
 impl WrongPixels {
     /// All of them.
-    pub fn total(&self) -> u64 {
+    pub(super) fn total(&self) -> u64 {
         self.solid + self.face + self.shadow + self.mirror
     }
 
     /// Counts a pixel, if `decision` is wrong.
-    pub fn add(&mut self, decision: Decision, truth: Decision) {
+    pub(super) fn add(&mut self, decision: Decision, truth: Decision) {
         use Decision::{Mirrored, Solid, Surface, SurfaceInShadow};
         match (decision, truth) {
             _ if decision == truth => {}
@@ -44,22 +44,22 @@ impl WrongPixels {
 
 /// What a kernel gets wrong over some frames, and how many pixels were in doubt on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Errors {
+pub(super) struct Errors {
     /// Pixels with a wrong decision.
-    pub wrong_pixels: WrongPixels,
+    pub(super) wrong_pixels: WrongPixels,
     /// The difference of all samples.
-    pub all: Difference,
+    pub(super) all: Difference,
     /// The difference of the samples of those pixels that are decided rightly: errors of
     /// arithmetic, not of decisions.
-    pub decided_rightly: Difference,
+    pub(super) decided_rightly: Difference,
     /// Pixels that cheaper arithmetic left in doubt.
-    pub in_doubt: InDoubt,
+    pub(super) in_doubt: InDoubt,
 }
 
 impl Errors {
     /// Adds a frame: what a kernel made of it, and what it truly is. Pixels that one of the four
     /// lacks are left out.
-    pub fn add(
+    pub(super) fn add(
         &mut self,
         (image, decisions): (&Image, &[Decision]),
         (true_image, true_decisions): (&Image, &[Decision]),

@@ -9,7 +9,7 @@ macro_rules! scenes {
 
 /// Their names and their texts, sorted by name.
 #[rustfmt::skip]
-pub const HARD_SCENES: &[(&str, &str)] = scenes! {
+pub(super) const HARD_SCENES: &[(&str, &str)] = scenes! {
     "along_faces"
     "axis_spheres"
     "below_the_floor"

@@ -1,46 +1,52 @@
 //! What the measuring was done on, and with.
 
-use std::{env, fs};
+use std::num::NonZeroUsize;
+use std::{env, fs, thread};
 
 use serde::Serialize;
 
 /// A machine, and the program on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Machine {
+pub(super) struct Machine {
     /// The processor, as it names itself; "unknown" where the system does not tell.
-    pub cpu: String,
+    pub(super) cpu: String,
     /// What the processor has of SIMD instruction sets.
-    pub features: Vec<&'static str>,
+    pub(super) features: Vec<&'static str>,
     /// The architecture that the program was built for.
-    pub architecture: &'static str,
+    pub(super) architecture: &'static str,
     /// The operating system.
-    pub os: &'static str,
+    pub(super) os: &'static str,
     /// Threads that run at the same time.
-    pub cores: usize,
+    pub(super) cores: usize,
     /// The version of the program.
-    pub version: &'static str,
+    pub(super) version: &'static str,
     /// The commit that it was built from: the environment variable `FIRSTHIT_COMMIT` of the build,
     /// else the one that the sources of the build were at; `None` where neither was known, and
     /// in a debug build. Changes to the sources that were not committed are not seen.
-    pub commit: Option<String>,
+    pub(super) commit: Option<String>,
     /// Whether it was built without optimisation: then its times mean little.
-    pub debug_build: bool,
+    pub(super) debug_build: bool,
 }
 
 impl Machine {
     /// This one.
-    pub fn this() -> Machine {
+    pub(super) fn this() -> Machine {
         Machine {
             cpu: cpu(),
             features: features(),
             architecture: env::consts::ARCH,
             os: env::consts::OS,
-            cores: super::cores(),
+            cores: cores(),
             version: env!("CARGO_PKG_VERSION"),
             commit: option_env!("FIRSTHIT_COMMIT").map(str::to_owned),
             debug_build: cfg!(debug_assertions),
         }
     }
+}
+
+/// Threads that run at the same time.
+pub(super) fn cores() -> usize {
+    thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 fn cpu() -> String {

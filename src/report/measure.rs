@@ -21,18 +21,18 @@ const MAX_SAMPLES: usize = 101;
 
 /// The middle of some measurements, and how far they spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub(super) struct Spread {
     /// As many are below it as above.
-    pub median: f64,
+    pub(super) median: f64,
     /// The least.
-    pub min: f64,
+    pub(super) min: f64,
     /// The most.
-    pub max: f64,
+    pub(super) max: f64,
 }
 
 impl Spread {
     /// The spread of `values`; `None` of none.
-    pub fn of(mut values: Vec<f64>) -> Option<Spread> {
+    pub(super) fn of(mut values: Vec<f64>) -> Option<Spread> {
         values.sort_by(f64::total_cmp);
         let (&min, &max) = (values.first()?, values.last()?);
         let middle = values.len() / 2;
@@ -46,22 +46,22 @@ impl Spread {
 
 /// How fast one kernel traces some frames, with one number of threads.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Timing {
+pub(super) struct Timing {
     /// Threads that traced, and filled.
-    pub threads: usize,
+    pub(super) threads: usize,
     /// The vector instructions that the kernel used, as [`Simd`](crate::tracer::Simd) names them;
     /// "none" if none.
-    pub simd: &'static str,
+    pub(super) simd: &'static str,
     /// Rounds measured.
-    pub samples: usize,
+    pub(super) samples: usize,
     /// Milliseconds a frame.
-    pub ms: Spread,
+    pub(super) ms: Spread,
     /// Milliseconds to fill the picture with one colour, measured between the rounds.
-    pub fill_ms: Spread,
+    pub(super) fill_ms: Spread,
     /// The time of a round by the time of filling as often.
-    pub fill_ratio: Spread,
+    pub(super) fill_ratio: Spread,
     /// The same with each frame traced over its predecessor, by [`Tracer::retrace`].
-    pub retained_fill_ratio: Spread,
+    pub(super) retained_fill_ratio: Spread,
 }
 
 /// The fastest fill for one size and at most some threads.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::{ReportError, Request, Spread};
+use super::measure::Spread;
 use crate::camera::{ROUND, frame_angle};
 use crate::screen::{Cost, Path, ScreenError, Through, TimedScreen};
 use crate::tracer::TraceError;
@@ -20,60 +20,42 @@ const MIN_FRAMES: usize = 3;
 
 /// One way of frames to a screen of 8 bits a sample, and back.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pipeline {
+pub(super) struct Pipeline {
     /// What made the context.
-    pub through: Through,
+    pub(super) through: Through,
     /// How the pixels got in.
-    pub path: Path,
+    pub(super) path: Path,
     /// The kernel that traced them.
-    pub kernel: Kernel,
+    pub(super) kernel: Kernel,
     /// What it cost, or what is missing.
-    pub costs: Result<Costs, String>,
+    pub(super) costs: Result<Costs, String>,
 }
 
 /// Milliseconds a frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Costs {
+pub(super) struct Costs {
     /// To trace it over the frame before, on all threads.
-    pub trace_ms: Spread,
+    pub(super) trace_ms: Spread,
     /// To hand the rows that changed to OpenGL as a texture; 0 for `glDrawPixels`, which does that
     /// while it draws, at every redraw anew.
-    pub upload_ms: Spread,
+    pub(super) upload_ms: Spread,
     /// To draw it.
-    pub draw_ms: Spread,
+    pub(super) draw_ms: Spread,
     /// To read the bytes back, which a window need not.
-    pub read_back_ms: Spread,
+    pub(super) read_back_ms: Spread,
 }
 
-/// Shows rounds of frames by every way in turn, traced by the first kernel on the first scene in
-/// the first stage.
+/// Shows rounds of `frames` by every way in turn.
 pub(super) fn measure(
-    request: &Request,
-    threads: usize,
-    image: &mut Image,
+    mut frames: Frames<'_>,
     watch: &mut dyn FnMut(bool),
-) -> Result<Vec<Pipeline>, ReportError> {
-    let (Some(named), Some(&stage), Some(&kernel)) = (
-        request.scenes.first(),
-        request.stages.first(),
-        request
-            .kernels
-            .iter()
-            .find(|&&kernel| kernel != Kernel::Listing),
-    ) else {
-        return Ok(Vec::new());
-    };
-    let mut frames = Frames {
-        tracer: Tracer::new(kernel, threads)?,
-        scene: &named.scene,
-        stage,
-        image,
-    };
+) -> Result<Vec<Pipeline>, TraceError> {
+    let (kernel, size) = (frames.tracer.kernel(), frames.image.size());
     let mut ways = Vec::new();
     for through in [Through::Egl, Through::OsMesa] {
         for path in Path::ALL {
             watch(true);
-            ways.push(Way::open(through, path, request.size));
+            ways.push(Way::open(through, path, size));
             watch(false);
         }
     }
@@ -86,11 +68,11 @@ pub(super) fn measure(
 }
 
 /// Frames, each traced over the one before.
-struct Frames<'f> {
-    tracer: Tracer,
-    scene: &'f Scene,
-    stage: Stage,
-    image: &'f mut Image,
+pub(super) struct Frames<'f> {
+    pub(super) tracer: Tracer,
+    pub(super) scene: &'f Scene,
+    pub(super) stage: Stage,
+    pub(super) image: &'f mut Image,
 }
 
 impl Frames<'_> {

@@ -11,6 +11,13 @@ pub(super) enum Profile {
     /// Version 3.3 without what is out of date.
     Core,
     /// With it: what the document was written for.
+    #[cfg_attr(
+        not(feature = "program"),
+        expect(
+            dead_code,
+            reason = "only the program's report draws as the document does"
+        )
+    )]
     Compatibility,
 }
 

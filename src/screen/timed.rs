@@ -16,7 +16,7 @@ use crate::{Image, memory};
 
 /// How pixels get into a framebuffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
+pub(crate) enum Path {
     /// As a retained texture, drawn on a quad, in a core context: a [`Screen`].
     Texture,
     /// By `glDrawPixels`, as the document does, in a compatibility context.
@@ -25,10 +25,10 @@ pub enum Path {
 
 impl Path {
     /// Both.
-    pub const ALL: [Path; 2] = [Path::Texture, Path::DrawPixels];
+    pub(crate) const ALL: [Path; 2] = [Path::Texture, Path::DrawPixels];
 
     /// "texture" or "glDrawPixels".
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Path::Texture => "texture",
             Path::DrawPixels => "glDrawPixels",
@@ -38,25 +38,27 @@ impl Path {
 
 /// What a displayed frame cost. Each step is waited for (`glFinish`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cost {
+pub(crate) struct Cost {
     /// The texture's new samples; nothing for [`Path::DrawPixels`].
-    pub upload: Duration,
+    pub(crate) upload: Duration,
     /// Clearing and drawing.
-    pub draw: Duration,
+    pub(crate) draw: Duration,
     /// Reading back what was drawn.
-    pub read_back: Duration,
+    pub(crate) read_back: Duration,
 }
 
 /// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one way of
 /// pictures into it.
 ///
 /// As with [`Offscreen`](super::Offscreen), no context is current before and after each call.
-pub struct TimedScreen {
+pub(crate) struct TimedScreen {
     // Dropped in this order: what belongs to the context before the context.
     framebuffer: Framebuffer,
     way: Way,
     gl: Rc<glow::Context>,
     size: u32,
+    /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before
+    /// the first.
     bytes: Vec<u8>,
     context: Box<dyn Context>,
 }
@@ -128,7 +130,11 @@ impl TimedScreen {
     ///
     /// # Errors
     /// Those of [`Offscreen::open`](super::Offscreen::open).
-    pub fn open(through: Through, path: Path, size: u32) -> Result<TimedScreen, ScreenError> {
+    pub(crate) fn open(
+        through: Through,
+        path: Path,
+        size: u32,
+    ) -> Result<TimedScreen, ScreenError> {
         let profile = match path {
             Path::Texture => Profile::Core,
             Path::DrawPixels => Profile::Compatibility,
@@ -169,17 +175,11 @@ impl TimedScreen {
     ///
     /// # Errors
     /// [`ScreenError`] unless `image` has the size of the screen and the driver takes it.
-    pub fn show(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
+    pub(crate) fn show(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
         self.context.make_current()?;
         let cost = self.steps(image, rows);
         self.context.release();
         cost
-    }
-
-    /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before
-    /// the first.
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
     }
 
     fn steps(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
@@ -299,7 +299,7 @@ mod tests {
                     }
                     opened => opened.expect(&what),
                 };
-                assert!(screen.bytes().is_empty());
+                assert!(screen.bytes.is_empty());
                 for picture in &pictures {
                     let cost = screen.show(picture, 0..64).expect(&what);
                     assert_eq!(cost.upload.is_zero(), path == Path::DrawPixels);
@@ -310,7 +310,7 @@ mod tests {
                             [red, green, blue, 255]
                         })
                         .collect();
-                    assert!(screen.bytes() == expected, "{what}");
+                    assert!(screen.bytes == expected, "{what}");
                 }
                 let other = Image::new(63).unwrap();
                 assert!(matches!(
