@@ -145,6 +145,11 @@ impl Comparing {
         }
     }
 
+    /// Forgets the last wish, so that the same may be wished for again.
+    pub(super) fn forget(&mut self) {
+        self.wished = None;
+    }
+
     pub(super) fn reply(&self) -> Option<Reply> {
         self.worker.reply()
     }

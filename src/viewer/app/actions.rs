@@ -83,6 +83,8 @@ impl App<'_> {
     /// Shows the errors of the picture, or the picture again.
     fn toggle_errors(&mut self) {
         self.content.toggle_errors(Instant::now());
+        // Errors that are not shown are not kept.
+        self.comparing.forget();
         self.compare();
         self.touch();
     }
