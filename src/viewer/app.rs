@@ -166,7 +166,7 @@ impl App<'_> {
             self.playback.advance(now);
             // The next picture is traced over this one, unless its pixels are looked at.
             if !self.sheet.names_pixels() {
-                self.content.give_back();
+                self.content.give_back(self.wanted());
             }
         }
         self.tracing.wish(self.wanted());

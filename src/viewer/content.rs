@@ -183,12 +183,14 @@ impl Content {
         }
     }
 
-    /// Gives the samples back, to be traced over, where the texture holds them: not those of a slow
-    /// picture, which may be wanted again before the next one is there.
-    pub(super) fn give_back(&mut self) {
+    /// Gives the samples back, to be traced over by `next`, where the texture holds them: not those
+    /// of a slow picture, which may be wanted again before the next one is there, and not those of
+    /// `next` itself, which would not be traced again.
+    pub(super) fn give_back(&mut self, next: Frame) {
         if let Content::Picture(picture) = self
             && let Texture::Current = picture.texture
             && picture.traced.time < SOON
+            && picture.traced.frame != next
         {
             picture.samples = None;
         }
@@ -333,12 +335,18 @@ mod tests {
 
     #[test]
     fn samples_are_given_back_once_they_are_uploaded_and_not_looked_at() {
+        let next = traced(9, 0..SIZE).frame;
         let mut content = Content::default();
         come(&mut content, 1, 0..SIZE);
-        content.give_back();
+        content.give_back(next);
         assert!(content.samples().is_some(), "not uploaded yet");
         upload(&mut content);
-        content.give_back();
+        content.give_back(traced(1, 0..SIZE).frame);
+        assert!(
+            content.samples().is_some(),
+            "there is no other picture next"
+        );
+        content.give_back(next);
         assert!(content.samples().is_none() && content.in_texture().is_none());
         assert_eq!(content.redisplay(false, false, false), Redisplay::Draw);
         content.lose_texture();
@@ -350,13 +358,13 @@ mod tests {
         };
         content.picture_came(slow, Arc::new(image(2.0)), Instant::now());
         upload(&mut content);
-        content.give_back();
+        content.give_back(next);
         assert!(content.samples().is_some(), "a slow picture");
 
         content.toggle_errors(Instant::now());
         come(&mut content, 3, 0..SIZE);
         upload(&mut content);
-        content.give_back();
+        content.give_back(next);
         assert!(content.samples().is_some(), "errors are looked at");
     }
 
@@ -425,7 +433,7 @@ mod tests {
                         content.comparison_came(compared);
                     }
                 }
-                4 => content.give_back(),
+                4 => content.give_back(traced(number + 1, 0..SIZE).frame),
                 5 if random.below(4) == 0 => {
                     content.lose_texture();
                     texture.fill(f32::NAN);

@@ -334,24 +334,30 @@ fn the_error_view_shows_where_a_kernel_is_wrong() {
 
 #[test]
 fn the_error_view_comes_and_goes_as_often_as_it_is_asked_for() {
-    let arguments = ["view", "--size", "100", "--stage", "6"];
-    let Some(mut session) = Session::start(&arguments) else {
-        return;
-    };
-    session.resize(600, 600);
-    for _ in 0..3 {
-        session.type_keys("e");
-        session.becomes(600 + PANEL_WIDTH, 600);
-        wait_for("no error at all", || {
-            let shown = session.pixels()?.part([0, 0], [600, 600]);
-            (shown.count([0; 3]) == 600 * 600).then_some(())
-        });
-        session.type_keys("e");
-        session.becomes(600, 600);
-        session.shows(100, Stage::Reflection, 0.0);
+    // Of a static stage, and of an animation that plays on the spot.
+    for arguments in [["--stage", "6"], ["--speed", "0"]] {
+        let arguments = [&["view", "--size", "100"], &arguments[..]].concat();
+        let Some(mut session) = Session::start(&arguments) else {
+            return;
+        };
+        session.resize(600, 600);
+        let picture = letterboxed(&traced(100, Stage::Reflection, 0.0), 600, 600);
+        for _ in 0..3 {
+            session.type_keys("e");
+            session.becomes(600 + PANEL_WIDTH, 600);
+            wait_for("no error at all", || {
+                let shown = session.pixels()?.part([0, 0], [600, 600]);
+                (shown.count([0; 3]) == 600 * 600).then_some(())
+            });
+            session.type_keys("e");
+            session.becomes(600, 600);
+            wait_for("the picture", || {
+                (session.pixels()?.differences(&picture, 0..600) == 0).then_some(())
+            });
+        }
+        session.type_keys("q");
+        session.program.left();
     }
-    session.type_keys("q");
-    session.program.left();
 }
 
 #[test]
