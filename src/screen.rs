@@ -46,7 +46,7 @@ pub use offscreen::{Offscreen, Through};
 pub use placement::Placement;
 use program::Program;
 #[cfg(feature = "program")]
-pub(crate) use timed::{Cost, Path, TimedScreen};
+pub(crate) use timed::{Cost, DrawMethod, TimedScreen};
 
 /// The clear colour of the document, `glClearColor(0, 0, 1, …)`; opaque, or a compositor would let
 /// the desktop shine through.

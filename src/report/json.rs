@@ -165,7 +165,7 @@ fn json_pipeline(pipeline: &Pipeline) -> JsonPipeline<'_> {
     let median = |spread: Spread| spread.median;
     JsonPipeline {
         context: pipeline.through.name(),
-        path: pipeline.path.name(),
+        path: pipeline.method.name(),
         missing: costs.err().map(String::as_str),
         kernel: pipeline.kernel.name(),
         trace_ms: costs.ok().map(|costs| median(costs.trace_ms)),

@@ -5,26 +5,27 @@ use std::time::{Duration, Instant};
 
 use super::measure::Spread;
 use crate::camera::{ROUND, frame_angle};
-use crate::screen::{Cost, Path, ScreenError, Through, TimedScreen};
+use crate::screen::{Cost, DrawMethod, ScreenError, Through, TimedScreen};
 use crate::tracer::TraceError;
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
-/// Rounds of frames for each way, unless they take too long.
+/// Rounds of frames in each benchmark, unless they take too long.
 const ROUNDS: u64 = 2;
 
-/// About as long as each way may take in all.
+/// About as long as each benchmark may take in all.
 const TIME: Duration = Duration::from_secs(1);
 
 /// At least this many frames that count.
 const MIN_FRAMES: usize = 3;
 
-/// One way of frames to a screen of 8 bits a sample, and back.
+/// What it costs to send frames to a framebuffer of 8 bits a sample and back, in one context and by
+/// one method.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pipeline {
     /// What made the context.
     pub(super) through: Through,
     /// How the pixels got in.
-    pub(super) path: Path,
+    pub(super) method: DrawMethod,
     /// The kernel that traced them.
     pub(super) kernel: Kernel,
     /// What it cost, or what is missing.
@@ -45,26 +46,29 @@ pub(super) struct Costs {
     pub(super) read_back_ms: Spread,
 }
 
-/// Shows rounds of `frames` by every way in turn.
+/// Runs every benchmark in turn, on `frames`.
 pub(super) fn measure(
     mut frames: Frames<'_>,
     watch: &mut dyn FnMut(bool),
 ) -> Result<Vec<Pipeline>, TraceError> {
     let (kernel, size) = (frames.tracer.kernel(), frames.image.size());
-    let mut ways = Vec::new();
+    let mut benchmarks = Vec::new();
     for through in [Through::Egl, Through::OsMesa] {
-        for path in Path::ALL {
+        for method in DrawMethod::ALL {
             watch(true);
-            ways.push(Way::open(through, path, size));
+            benchmarks.push(Benchmark::open(through, method, size));
             watch(false);
         }
     }
     for _ in 0..ROUNDS {
-        for way in &mut ways {
-            way.round(&mut frames, watch)?;
+        for benchmark in &mut benchmarks {
+            benchmark.round(&mut frames, watch)?;
         }
     }
-    Ok(ways.into_iter().map(|way| way.pipeline(kernel)).collect())
+    Ok(benchmarks
+        .into_iter()
+        .map(|benchmark| benchmark.pipeline(kernel))
+        .collect())
 }
 
 /// Frames, each traced over the one before.
@@ -86,10 +90,10 @@ impl Frames<'_> {
     }
 }
 
-/// One way, as it is measured.
-struct Way {
+/// A [`Pipeline`] that is being measured.
+struct Benchmark {
     through: Through,
-    path: Path,
+    method: DrawMethod,
     screen: Result<TimedScreen, ScreenError>,
     traces: Vec<Duration>,
     costs: Vec<Cost>,
@@ -97,12 +101,12 @@ struct Way {
     time: Duration,
 }
 
-impl Way {
-    fn open(through: Through, path: Path, size: u32) -> Way {
-        Way {
+impl Benchmark {
+    fn open(through: Through, method: DrawMethod, size: u32) -> Benchmark {
+        Benchmark {
             through,
-            path,
-            screen: TimedScreen::open(through, path, size),
+            method,
+            screen: TimedScreen::open(through, method, size),
             traces: Vec::new(),
             costs: Vec::new(),
             time: Duration::ZERO,
@@ -119,8 +123,8 @@ impl Way {
             return Ok(());
         };
         let begin = Instant::now();
-        // The first finds the picture of another way on the screen, and what is made at first use
-        // not made: it is uploaded whole, and does not count.
+        // The first frame finds another benchmark's picture in the texture, and pays for what is made at
+        // first use: it is uploaded whole, and does not count.
         for frame in 0..=ROUND {
             let (time, changed) = frames.trace(frame_angle(frame))?;
             let image = &*frames.image;
@@ -166,7 +170,7 @@ impl Way {
         };
         Pipeline {
             through: self.through,
-            path: self.path,
+            method: self.method,
             kernel,
             costs: match &self.screen {
                 Ok(_) => costs().ok_or_else(|| "nothing was shown".to_owned()),

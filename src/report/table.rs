@@ -134,12 +134,12 @@ impl Report {
         let mut missing = String::new();
         for Pipeline {
             through,
-            path,
+            method,
             costs,
             ..
         } in &self.pipelines
         {
-            let (through, path) = (through.name(), path.name());
+            let (through, method) = (through.name(), method.name());
             match costs {
                 Ok(costs) => {
                     let steps = [
@@ -149,13 +149,13 @@ impl Report {
                         costs.read_back_ms,
                     ]
                     .map(|step| step.median);
-                    let mut cells = vec![through.to_owned(), path.to_owned()];
+                    let mut cells = vec![through.to_owned(), method.to_owned()];
                     cells.extend(steps.map(digits));
                     cells.push(digits(steps.iter().sum()));
                     table.rows.push(cells);
                 }
                 Err(reason) => {
-                    let _ = writeln!(missing, "{through}, {path}: {reason}");
+                    let _ = writeln!(missing, "{through}, {method}: {reason}");
                 }
             }
         }

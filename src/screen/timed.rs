@@ -1,4 +1,4 @@
-//! What a displayed frame costs, step by step: this crate's way, and the document's.
+//! What a displayed frame costs, step by step: as this crate draws it, and as the document does.
 
 use std::ffi::c_void;
 use std::ops::Range;
@@ -14,32 +14,32 @@ use super::{CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError, 
 use super::{check, set_unpacking};
 use crate::{Image, memory};
 
-/// How pixels get into a framebuffer.
+/// How pictures are drawn into a framebuffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Path {
+pub(crate) enum DrawMethod {
     /// As a retained texture, drawn on a quad, in a core context: a [`Screen`].
     Texture,
     /// By `glDrawPixels`, as the document does, in a compatibility context.
     DrawPixels,
 }
 
-impl Path {
+impl DrawMethod {
     /// Both.
-    pub(crate) const ALL: [Path; 2] = [Path::Texture, Path::DrawPixels];
+    pub(crate) const ALL: [DrawMethod; 2] = [DrawMethod::Texture, DrawMethod::DrawPixels];
 
     /// "texture" or "glDrawPixels".
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Path::Texture => "texture",
-            Path::DrawPixels => "glDrawPixels",
+            DrawMethod::Texture => "texture",
+            DrawMethod::DrawPixels => "glDrawPixels",
         }
     }
 }
 
-/// What a displayed frame cost. Each step is waited for (`glFinish`).
+/// The times of a displayed frame. Each step is waited for (`glFinish`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cost {
-    /// The texture's new samples; nothing for [`Path::DrawPixels`].
+    /// The texture's new samples; nothing for [`DrawMethod::DrawPixels`].
     pub(crate) upload: Duration,
     /// Clearing and drawing.
     pub(crate) draw: Duration,
@@ -47,14 +47,14 @@ pub(crate) struct Cost {
     pub(crate) read_back: Duration,
 }
 
-/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one way of
-/// pictures into it.
+/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one method of drawing
+/// into it.
 ///
 /// As with [`Offscreen`](super::Offscreen), no context is current before and after each call.
 pub(crate) struct TimedScreen {
     // Dropped in this order: what belongs to the context before the context.
     framebuffer: Framebuffer,
-    way: Way,
+    renderer: Renderer,
     gl: Rc<glow::Context>,
     size: u32,
     /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before
@@ -63,7 +63,8 @@ pub(crate) struct TimedScreen {
     context: Box<dyn Context>,
 }
 
-enum Way {
+/// What draws by a [`DrawMethod`].
+enum Renderer {
     Texture(Screen),
     DrawPixels(DrawPixels),
 }
@@ -132,21 +133,21 @@ impl TimedScreen {
     /// Those of [`Offscreen::open`](super::Offscreen::open).
     pub(crate) fn open(
         through: Through,
-        path: Path,
+        method: DrawMethod,
         size: u32,
     ) -> Result<TimedScreen, ScreenError> {
-        let profile = match path {
-            Path::Texture => Profile::Core,
-            Path::DrawPixels => Profile::Compatibility,
+        let profile = match method {
+            DrawMethod::Texture => Profile::Core,
+            DrawMethod::DrawPixels => Profile::Compatibility,
         };
         let context = through.open(profile, size)?;
         context.make_current()?;
-        let made = TimedScreen::make(context.as_ref(), path, size);
+        let made = TimedScreen::make(context.as_ref(), method, size);
         context.release();
-        let (framebuffer, way, gl) = made?;
+        let (framebuffer, renderer, gl) = made?;
         Ok(TimedScreen {
             framebuffer,
-            way,
+            renderer,
             gl,
             size,
             bytes: Vec::new(),
@@ -156,18 +157,18 @@ impl TimedScreen {
 
     fn make(
         context: &dyn Context,
-        path: Path,
+        method: DrawMethod,
         size: u32,
-    ) -> Result<(Framebuffer, Way, Rc<glow::Context>), ScreenError> {
+    ) -> Result<(Framebuffer, Renderer, Rc<glow::Context>), ScreenError> {
         let gl = Rc::new(context.functions()?);
-        let way = match path {
+        let renderer = match method {
             // SAFETY: the context is current, and made current again before the screen is used or
             // dropped.
-            Path::Texture => Way::Texture(unsafe { Screen::new(gl.clone(), size) }?),
-            Path::DrawPixels => Way::DrawPixels(DrawPixels::load(context)?),
+            DrawMethod::Texture => Renderer::Texture(unsafe { Screen::new(gl.clone(), size) }?),
+            DrawMethod::DrawPixels => Renderer::DrawPixels(DrawPixels::load(context)?),
         };
         let framebuffer = Framebuffer::new(gl.clone(), UVec2::splat(size), glow::RGBA8)?;
-        Ok((framebuffer, way, gl))
+        Ok((framebuffer, renderer, gl))
     }
 
     /// Shows `image`, and says what each step cost. Of a texture only `rows` are replaced, as by
@@ -191,29 +192,29 @@ impl TimedScreen {
         }
         self.framebuffer.bind();
         let start = Instant::now();
-        if let Way::Texture(screen) = &mut self.way {
+        if let Renderer::Texture(screen) = &mut self.renderer {
             screen.upload_rows(image, rows)?;
             self.finish();
         }
         let uploaded = Instant::now();
-        match &self.way {
-            Way::Texture(screen) => screen.draw(
+        match &self.renderer {
+            Renderer::Texture(screen) => screen.draw(
                 UVec2::splat(self.size),
                 Placement {
                     origin: IVec2::ZERO,
                     extent: self.size,
                 },
             ),
-            Way::DrawPixels(functions) => functions.draw(&self.gl, image),
+            Renderer::DrawPixels(functions) => functions.draw(&self.gl, image),
         }
         self.finish();
         let drawn = Instant::now();
         self.read_back()?;
         let read = Instant::now();
         check(&self.gl, "to draw the picture and read it back", self.size)?;
-        let upload = match self.way {
-            Way::Texture(_) => uploaded - start,
-            Way::DrawPixels(_) => Duration::ZERO,
+        let upload = match self.renderer {
+            Renderer::Texture(_) => uploaded - start,
+            Renderer::DrawPixels(_) => Duration::ZERO,
         };
         Ok(Cost {
             upload,
@@ -285,13 +286,13 @@ mod tests {
 
     /// Both show what [`display_byte`] says, so their times are those of the same work.
     #[test]
-    fn both_paths_show_the_same_bytes() {
+    fn both_methods_show_the_same_bytes() {
         // The second has another value at every sample.
         let pictures = [ramp(|i| i), ramp(|i| 12287 - i)];
         for through in [Through::Egl, Through::OsMesa] {
-            for path in Path::ALL {
-                let what = format!("{} {}", through.name(), path.name());
-                let mut screen = match TimedScreen::open(through, path, 64) {
+            for method in DrawMethod::ALL {
+                let what = format!("{} {}", through.name(), method.name());
+                let mut screen = match TimedScreen::open(through, method, 64) {
                     Err(error @ ScreenError::Missing { .. }) => {
                         assert!(std::env::var_os("CI").is_none(), "{error}");
                         writeln!(std::io::stderr(), "skipped: {error}").unwrap();
@@ -302,7 +303,7 @@ mod tests {
                 assert!(screen.bytes.is_empty());
                 for picture in &pictures {
                     let cost = screen.show(picture, 0..64).expect(&what);
-                    assert_eq!(cost.upload.is_zero(), path == Path::DrawPixels);
+                    assert_eq!(cost.upload.is_zero(), method == DrawMethod::DrawPixels);
                     let pixels = picture.samples().chunks_exact(3);
                     let expected: Vec<u8> = pixels
                         .flat_map(|pixel| {
