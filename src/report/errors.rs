@@ -157,8 +157,8 @@ mod tests {
         let truth = Image::new(2).unwrap();
         let true_decisions = [Decision::Background; 4];
         let mut image = truth.clone();
-        // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error. Pixel
-        // 2: a NaN.
+        // Pixel 0: three floats off in one sample. Pixel 1: a wrong decision, with a large error.
+        // Pixel 2: a NaN.
         image.samples_mut()[1] = f32::from_bits(3);
         image.samples_mut()[4] = 0.75;
         image.samples_mut()[8] = f32::NAN;

@@ -123,8 +123,8 @@ impl Benchmark {
             return Ok(());
         };
         let begin = Instant::now();
-        // The first frame finds another benchmark's picture in the texture, and pays for what is made at
-        // first use: it is uploaded whole, and does not count.
+        // The first frame finds another benchmark's picture in the texture, and pays for what is
+        // made at first use: it is uploaded whole, and does not count.
         for frame in 0..=ROUND {
             let (time, changed) = frames.trace(frame_angle(frame))?;
             let image = &*frames.image;

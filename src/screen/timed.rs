@@ -47,8 +47,8 @@ pub(crate) struct Cost {
     pub(crate) read_back: Duration,
 }
 
-/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one method of drawing
-/// into it.
+/// A framebuffer of 8 bits a sample, as a window's, in a context of its own, and one method of
+/// drawing into it.
 ///
 /// As with [`Offscreen`](super::Offscreen), no context is current before and after each call.
 pub(crate) struct TimedScreen {

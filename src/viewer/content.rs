@@ -235,9 +235,9 @@ impl Content {
         }
     }
 
-    /// What a redisplay does: the texture `is_new` where it has just been uploaded, the next picture
-    /// `is_awaited` where it is being traced, and the window `is_overdue` where it cannot wait for
-    /// that any longer.
+    /// What a redisplay does: the texture `is_new` where it has just been uploaded, the next
+    /// picture `is_awaited` where it is being traced, and the window `is_overdue` where it cannot
+    /// wait for that any longer.
     pub(super) fn redisplay(&self, is_new: bool, is_awaited: bool, is_overdue: bool) -> Redisplay {
         match self.picture().map(|picture| &picture.texture) {
             None if is_overdue => Redisplay::Clear,
