@@ -42,7 +42,7 @@ pub(crate) use context::functions;
 pub use error::ScreenError;
 #[cfg(feature = "program")]
 pub(crate) use layer::Layer;
-pub use offscreen::{Offscreen, Through};
+pub use offscreen::{Backend, Offscreen};
 pub use placement::Placement;
 use program::Program;
 #[cfg(feature = "program")]

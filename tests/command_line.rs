@@ -10,7 +10,7 @@ use std::process::Output;
 use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
-use firsthit::screen::{Offscreen, Through};
+use firsthit::screen::{Backend, Offscreen};
 use firsthit::{Image, Kernel, Scene, Stage, scene};
 use tempfile::TempDir;
 
@@ -377,8 +377,8 @@ fn a_link_is_followed_but_what_is_no_file_stays() {
 
 #[test]
 fn every_way_gives_the_same_bytes() {
-    for (name, through) in [("egl", Through::Egl), ("osmesa", Through::OsMesa)] {
-        if open(through, 8).is_none() {
+    for (name, backend) in [("egl", Backend::Egl), ("osmesa", Backend::OsMesa)] {
+        if open(backend, 8).is_none() {
             continue;
         }
         for (output, frames) in [
@@ -425,10 +425,10 @@ fn without_a_way_standard_error_says_which_was_taken() {
         .lines()
         .find(|line| line.starts_with("firsthit: captured through "))
         .unwrap();
-    let works = |through| Offscreen::open(through, 65).is_ok();
-    let way = if works(Through::Egl) {
+    let works = |backend| Offscreen::open(backend, 65).is_ok();
+    let way = if works(Backend::Egl) {
         "egl"
-    } else if works(Through::OsMesa) {
+    } else if works(Backend::OsMesa) {
         "osmesa"
     } else {
         "none"

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use crate::helpers::{failed, program, succeeded, text, ways, with_fault};
+use crate::helpers::{backends, failed, program, succeeded, text, with_fault};
 
 /// What a driver does wrong, and what is said of it.
 const FAULTS: [(&str, &str); 6] = [
@@ -49,7 +49,7 @@ fn capture(folder: &TempDir, through: &str, fault: &str) -> Option<Output> {
 fn what_a_driver_gets_wrong_is_never_written() {
     let folder = folder();
     for (fault, said) in FAULTS {
-        for through in ways() {
+        for through in backends() {
             if fault == "has no eglGetProcAddress" && through != "egl" {
                 continue;
             }
@@ -77,7 +77,7 @@ fn the_next_way_is_taken_where_none_was_asked_for() {
         assert_eq!(output.status.code(), Some(0), "{fault}: {message}");
         assert_eq!(message.lines().count(), 1, "{fault}: {message}");
         let way = match fault {
-            "has no eglGetProcAddress" if ways().contains(&"osmesa") => "osmesa",
+            "has no eglGetProcAddress" if backends().contains(&"osmesa") => "osmesa",
             _ => "none",
         };
         let taken = format!("captured through {way}, ");
@@ -91,7 +91,7 @@ fn the_next_way_is_taken_where_none_was_asked_for() {
 #[ignore = "waits for 20 s: .ci/soak runs it"]
 fn a_driver_that_never_comes_back_is_given_up() {
     let folder = folder();
-    let mut throughs: Vec<_> = ways()
+    let mut throughs: Vec<_> = backends()
         .into_iter()
         .map(|way| format!(" --through {way}"))
         .collect();

@@ -19,10 +19,10 @@ use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 #[cfg(all(feature = "program", target_os = "linux"))]
 pub(crate) use fault::with_fault;
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use program::backends;
 #[cfg(all(feature = "program", unix))]
 pub(crate) use program::program_after;
-#[cfg(all(feature = "program", target_os = "linux"))]
-pub(crate) use program::ways;
 #[cfg(feature = "program")]
 pub(crate) use program::{
     PROGRAM, failed, names, open, printed, program, skipped, succeeded, text, words,

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use crate::helpers::{
-    PROGRAM, failed, names, program, program_after, succeeded, text, ways, with_fault, words,
+    PROGRAM, backends, failed, names, program, program_after, succeeded, text, with_fault, words,
 };
 
 fn folder() -> TempDir {
@@ -89,7 +89,7 @@ fn a_driver_that_could_not_have_its_memory_is_not_asked() {
     let folder = folder();
     for kib in [200_000, 400_000, 700_000, 1_000_000] {
         let limit = format!("ulimit -v {kib}");
-        for through in ways() {
+        for through in backends() {
             let line = format!("capture --stage 6 --size 50 --through {through} -o a.png");
             let output = program_after(&limit, &folder, &line).output().unwrap();
             let message = failed(&output, 1, &line);
@@ -137,7 +137,7 @@ fn a_driver_that_could_not_have_its_threads_is_not_asked() {
             command.arg(&copy).args(words(line)).current_dir("/");
             command.output().unwrap()
         };
-        for through in ways() {
+        for through in backends() {
             // It is not written, so that it need not be a place where that somebody may.
             let line =
                 format!("capture --stage 6 --size 50 --threads 1 --through {through} -o a.png");

@@ -3,14 +3,14 @@
 
 use std::ffi::c_void;
 
-use firsthit::screen::{Offscreen, ScreenError, Through};
+use firsthit::screen::{Backend, Offscreen, ScreenError};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use glutin::api::egl::device::Device;
 use glutin::api::egl::display::Display;
 
 use crate::helpers::{Random, hard_scene, open};
 
-const WAYS: [Through; 2] = [Through::Egl, Through::OsMesa];
+const BACKENDS: [Backend; 2] = [Backend::Egl, Backend::OsMesa];
 
 /// A picture whose sample `i` has the bits `bits(i)`.
 fn image(size: u32, bits: impl Fn(u32) -> u32) -> Image {
@@ -43,9 +43,9 @@ fn assert_same_bits(shown: &Image, image: &Image, what: &str) {
 fn every_stage_comes_back_bit_for_bit() {
     let scene = Scene::builtin();
     let mut tracer = Tracer::new(Kernel::default(), 0).unwrap();
-    for through in WAYS {
+    for backend in BACKENDS {
         for size in [1, 7, 499, 500] {
-            let Some(mut offscreen) = open(through, size) else {
+            let Some(mut offscreen) = open(backend, size) else {
                 break;
             };
             let mut image = Image::new(size).unwrap();
@@ -55,7 +55,7 @@ fn every_stage_comes_back_bit_for_bit() {
                 assert_same_bits(
                     &shown,
                     &image,
-                    &format!("{} {stage} {size}", through.name()),
+                    &format!("{} {stage} {size}", backend.name()),
                 );
             }
         }
@@ -93,14 +93,14 @@ const SPECIAL: [u32; 24] = [
 
 #[test]
 fn every_kind_of_float_comes_back_bit_for_bit() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 64) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 64) else {
             continue;
         };
         // Shifted by one from row to row, so that each value gets into each channel.
         let special = image(64, |i| SPECIAL[((i + i / 192) % 24) as usize]);
         let shown = offscreen.show(&special).unwrap();
-        assert_same_bits(&shown, &special, through.name());
+        assert_same_bits(&shown, &special, backend.name());
     }
 }
 
@@ -120,8 +120,8 @@ fn the_rows_that_changed_are_all_that_need_be_uploaded() {
         (Kernel::Fast, 2),
         (Kernel::Listing, 1),
     ];
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, size) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, size) else {
             continue;
         };
         let mut tracers = kernels.map(|(kernel, threads)| Tracer::new(kernel, threads).unwrap());
@@ -146,7 +146,7 @@ fn the_rows_that_changed_are_all_that_need_be_uploaded() {
                 .unwrap();
             rows_uploaded += rows.len();
             let shown = offscreen.show_rows(&image, rows.clone()).unwrap();
-            let what = format!("{} step {step} rows {rows:?}", through.name());
+            let what = format!("{} step {step} rows {rows:?}", backend.name());
             assert_same_bits(&shown, &image, &what);
         }
         // Rows that show only the background need not be uploaded again.
@@ -159,28 +159,28 @@ fn the_rows_that_changed_are_all_that_need_be_uploaded() {
 
 #[test]
 fn rows_that_no_picture_has_are_left_out() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 9) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 9) else {
             continue;
         };
         let [before, after] = [image(9, scattered(0)), image(9, scattered(1))];
         offscreen.show(&before).unwrap();
         for rows in [9..12, 4..4, 12..u32::MAX] {
             let shown = offscreen.show_rows(&after, rows).unwrap();
-            assert_same_bits(&shown, &before, through.name());
+            assert_same_bits(&shown, &before, backend.name());
         }
         let shown = offscreen.show_rows(&after, 3..u32::MAX).unwrap();
         let width = 3 * 9;
         let mut expected = before.clone();
         expected.samples_mut()[3 * width..].copy_from_slice(&after.samples()[3 * width..]);
-        assert_same_bits(&shown, &expected, through.name());
+        assert_same_bits(&shown, &expected, backend.name());
     }
 }
 
 #[test]
 fn no_sample_of_an_earlier_picture_stays() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 33) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 33) else {
             continue;
         };
         let same = |_| 0x3F80_0000;
@@ -192,20 +192,20 @@ fn no_sample_of_an_earlier_picture_stays() {
         ];
         for picture in &pictures {
             let shown = offscreen.show(picture).unwrap();
-            assert_same_bits(&shown, picture, through.name());
+            assert_same_bits(&shown, picture, backend.name());
         }
     }
 }
 
 #[test]
 fn a_picture_too_large_for_one_framebuffer_comes_back_in_bands() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 2501) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 2501) else {
             continue;
         };
         let picture = image(2501, scattered(0));
         let shown = offscreen.show(&picture).unwrap();
-        assert_same_bits(&shown, &picture, through.name());
+        assert_same_bits(&shown, &picture, backend.name());
     }
 }
 
@@ -213,13 +213,13 @@ fn a_picture_too_large_for_one_framebuffer_comes_back_in_bands() {
 fn several_live_in_one_thread_and_die_in_any_order() {
     for order in [[0, 1, 2, 3], [3, 2, 1, 0], [1, 3, 0, 2]] {
         let mut alive: Vec<_> = [
-            (Through::Egl, 20),
-            (Through::OsMesa, 30),
-            (Through::Egl, 30),
-            (Through::OsMesa, 20),
+            (Backend::Egl, 20),
+            (Backend::OsMesa, 30),
+            (Backend::Egl, 30),
+            (Backend::OsMesa, 20),
         ]
         .into_iter()
-        .map(|(through, size)| open(through, size).map(|offscreen| (offscreen, size)))
+        .map(|(backend, size)| open(backend, size).map(|offscreen| (offscreen, size)))
         .collect();
         for dies in order {
             // Twice: the second time, another one has been current since.
@@ -236,9 +236,9 @@ fn several_live_in_one_thread_and_die_in_any_order() {
 }
 
 /// Whether this thread has a context of this kind.
-fn is_any_current(through: Through) -> bool {
-    match through {
-        Through::Egl => {
+fn is_any_current(backend: Backend) -> bool {
+    match backend {
+        Backend::Egl => {
             let device = Device::query_devices().unwrap().next().unwrap();
             // SAFETY: no native display is passed, and asking for the current context has no
             // conditions.
@@ -248,7 +248,7 @@ fn is_any_current(through: Through) -> bool {
             };
             !current.is_null()
         }
-        Through::OsMesa => {
+        Backend::OsMesa => {
             // SAFETY: the library is loaded already, and this is the function's type in
             // GL/osmesa.h.
             let current = unsafe {
@@ -265,48 +265,48 @@ fn is_any_current(through: Through) -> bool {
 
 #[test]
 fn no_context_is_left_current() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 5) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 5) else {
             continue;
         };
-        assert!(!is_any_current(through), "{}: opened", through.name());
+        assert!(!is_any_current(backend), "{}: opened", backend.name());
         offscreen.show(&image(5, scattered(0))).unwrap();
-        assert!(!is_any_current(through), "{}: shown", through.name());
+        assert!(!is_any_current(backend), "{}: shown", backend.name());
         offscreen.show(&image(6, scattered(0))).unwrap_err();
-        assert!(!is_any_current(through), "{}: refused", through.name());
+        assert!(!is_any_current(backend), "{}: refused", backend.name());
         drop(offscreen);
-        assert!(!is_any_current(through), "{}: dropped", through.name());
-        Offscreen::open(through, 0).err().unwrap();
-        assert!(!is_any_current(through), "{}: not opened", through.name());
+        assert!(!is_any_current(backend), "{}: dropped", backend.name());
+        Offscreen::open(backend, 0).err().unwrap();
+        assert!(!is_any_current(backend), "{}: not opened", backend.name());
     }
 }
 
 #[test]
 fn a_picture_of_another_size_is_refused_and_the_next_one_is_not() {
-    for through in WAYS {
-        let Some(mut offscreen) = open(through, 5) else {
+    for backend in BACKENDS {
+        let Some(mut offscreen) = open(backend, 5) else {
             continue;
         };
         for size in [4, 6] {
             match offscreen.show(&image(size, scattered(0))) {
                 Err(ScreenError::Size { image, screen: 5 }) => assert_eq!(image, size),
-                other => panic!("{}: {other:?}", through.name()),
+                other => panic!("{}: {other:?}", backend.name()),
             }
         }
         let picture = image(5, scattered(0));
         let shown = offscreen.show(&picture).unwrap();
-        assert_same_bits(&shown, &picture, through.name());
+        assert_same_bits(&shown, &picture, backend.name());
     }
 }
 
 #[test]
 fn a_size_that_no_picture_has_is_refused() {
-    for through in WAYS {
-        if open(through, 1).is_none() {
+    for backend in BACKENDS {
+        if open(backend, 1).is_none() {
             continue;
         }
         for size in [0, 16_385, u32::MAX] {
-            let error = Offscreen::open(through, size).err().unwrap();
+            let error = Offscreen::open(backend, size).err().unwrap();
             assert!(matches!(error, ScreenError::Image(_)), "{error}");
         }
     }

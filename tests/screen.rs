@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
 use firsthit::Image;
-use firsthit::screen::{Offscreen, Placement, Screen, ScreenError, Through};
+use firsthit::screen::{Backend, Offscreen, Placement, Screen, ScreenError};
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 use glutin::api::egl::context::PossiblyCurrentContext;
@@ -374,7 +374,7 @@ fn what_another_painter_leaves_behind_does_no_harm() {
 #[test]
 fn an_offscreen_that_ends_takes_nothing_of_another_context_along() {
     let Some(gl) = Gl::open() else { return };
-    let offscreen = Offscreen::open(Through::Egl, 5).unwrap();
+    let offscreen = Offscreen::open(Backend::Egl, 5).unwrap();
     gl.context.make_current_surfaceless().unwrap();
     let mut screen = screen(gl.gl.clone(), 5).unwrap();
     screen.upload(&coordinates(5)).unwrap();

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use firsthit::Image;
-use firsthit::screen::{Offscreen, ScreenError, Through};
+use firsthit::screen::{Backend, Offscreen, ScreenError};
 
 use super::waiting::Waiting;
 
@@ -19,9 +19,9 @@ pub(crate) enum Way {
 
 /// The way that is taken, open for pictures of one size.
 pub(crate) struct Passage {
-    screen: Option<(Through, Offscreen)>,
+    screen: Option<(Backend, Offscreen)>,
     /// The ways to go on with where this one fails; none if it was asked for.
-    others: Vec<Through>,
+    others: Vec<Backend>,
     /// Why those before it were not taken; `None` if it was asked for.
     reasons: Option<String>,
     size: u32,
@@ -37,11 +37,11 @@ impl Passage {
             size,
         };
         match way {
-            Some(Way::Egl) => passage.enter(Through::Egl)?,
-            Some(Way::Osmesa) => passage.enter(Through::OsMesa)?,
+            Some(Way::Egl) => passage.enter(Backend::Egl)?,
+            Some(Way::Osmesa) => passage.enter(Backend::OsMesa)?,
             Some(Way::None) => {}
             None => {
-                passage.others = vec![Through::OsMesa, Through::Egl];
+                passage.others = vec![Backend::OsMesa, Backend::Egl];
                 passage.reasons = Some(String::new());
                 passage.enter_next();
             }
@@ -49,25 +49,25 @@ impl Passage {
         Ok(passage)
     }
 
-    fn enter(&mut self, through: Through) -> Result<(), ScreenError> {
+    fn enter(&mut self, backend: Backend) -> Result<(), ScreenError> {
         let _waiting = Waiting::for_driver(self.size);
-        self.screen = Some((through, Offscreen::open(through, self.size)?));
+        self.screen = Some((backend, Offscreen::open(backend, self.size)?));
         Ok(())
     }
 
     /// Takes the next way that is open, or none.
     fn enter_next(&mut self) {
-        while let Some(through) = self.others.pop() {
-            match self.enter(through) {
+        while let Some(backend) = self.others.pop() {
+            match self.enter(backend) {
                 Ok(()) => return,
-                Err(error) => self.leave(through, &error),
+                Err(error) => self.leave(backend, &error),
             }
         }
     }
 
     /// Notes why a way is not taken.
-    fn leave(&mut self, through: Through, error: &ScreenError) {
-        let name = through.name();
+    fn leave(&mut self, backend: Backend, error: &ScreenError) {
+        let name = backend.name();
         let reasons = self.reasons.get_or_insert_default();
         reasons.push_str(&format!("; not through {name}: {error}"));
     }
@@ -75,7 +75,7 @@ impl Passage {
     /// Sends a picture through. At the other end it is the same, bit for bit, or there is an error;
     /// where the way was not asked for, the next one is taken then.
     pub(crate) fn pass(&mut self, image: &Image) -> Result<(), ScreenError> {
-        while let Some((through, screen)) = &mut self.screen {
+        while let Some((backend, screen)) = &mut self.screen {
             let waiting = Waiting::for_driver(self.size);
             let passed = screen.show(image).and_then(|back| compare(image, &back));
             drop(waiting);
@@ -83,9 +83,9 @@ impl Passage {
                 Ok(()) => break,
                 Err(error) if self.reasons.is_none() => return Err(error),
                 Err(error) => {
-                    let through = *through;
+                    let backend = *backend;
                     self.screen = None;
-                    self.leave(through, &error);
+                    self.leave(backend, &error);
                     self.enter_next();
                 }
             }
@@ -97,8 +97,8 @@ impl Passage {
     pub(crate) fn note(&self) -> Option<String> {
         let reasons = self.reasons.as_ref()?;
         Some(match &self.screen {
-            Some((through, _)) => {
-                let name = through.name();
+            Some((backend, _)) => {
+                let name = backend.name();
                 format!("captured through {name}, the first that works here{reasons}")
             }
             None => {

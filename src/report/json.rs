@@ -164,7 +164,7 @@ fn json_pipeline(pipeline: &Pipeline) -> JsonPipeline<'_> {
     let costs = pipeline.costs.as_ref();
     let median = |spread: Spread| spread.median;
     JsonPipeline {
-        context: pipeline.through.name(),
+        context: pipeline.backend.name(),
         path: pipeline.method.name(),
         missing: costs.err().map(String::as_str),
         kernel: pipeline.kernel.name(),

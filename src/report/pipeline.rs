@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::measure::Spread;
 use crate::camera::{ROUND, frame_angle};
-use crate::screen::{Cost, DrawMethod, ScreenError, Through, TimedScreen};
+use crate::screen::{Backend, Cost, DrawMethod, ScreenError, TimedScreen};
 use crate::tracer::TraceError;
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
@@ -23,7 +23,7 @@ const MIN_FRAMES: usize = 3;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pipeline {
     /// What made the context.
-    pub(super) through: Through,
+    pub(super) backend: Backend,
     /// How the pixels got in.
     pub(super) method: DrawMethod,
     /// The kernel that traced them.
@@ -53,10 +53,10 @@ pub(super) fn measure(
 ) -> Result<Vec<Pipeline>, TraceError> {
     let (kernel, size) = (frames.tracer.kernel(), frames.image.size());
     let mut benchmarks = Vec::new();
-    for through in [Through::Egl, Through::OsMesa] {
+    for backend in [Backend::Egl, Backend::OsMesa] {
         for method in DrawMethod::ALL {
             watch(true);
-            benchmarks.push(Benchmark::open(through, method, size));
+            benchmarks.push(Benchmark::open(backend, method, size));
             watch(false);
         }
     }
@@ -92,7 +92,7 @@ impl Frames<'_> {
 
 /// A [`Pipeline`] that is being measured.
 struct Benchmark {
-    through: Through,
+    backend: Backend,
     method: DrawMethod,
     screen: Result<TimedScreen, ScreenError>,
     traces: Vec<Duration>,
@@ -102,11 +102,11 @@ struct Benchmark {
 }
 
 impl Benchmark {
-    fn open(through: Through, method: DrawMethod, size: u32) -> Benchmark {
+    fn open(backend: Backend, method: DrawMethod, size: u32) -> Benchmark {
         Benchmark {
-            through,
+            backend,
             method,
-            screen: TimedScreen::open(through, method, size),
+            screen: TimedScreen::open(backend, method, size),
             traces: Vec::new(),
             costs: Vec::new(),
             time: Duration::ZERO,
@@ -169,7 +169,7 @@ impl Benchmark {
             })
         };
         Pipeline {
-            through: self.through,
+            backend: self.backend,
             method: self.method,
             kernel,
             costs: match &self.screen {

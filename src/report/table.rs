@@ -133,13 +133,13 @@ impl Report {
         ]);
         let mut missing = String::new();
         for Pipeline {
-            through,
+            backend,
             method,
             costs,
             ..
         } in &self.pipelines
         {
-            let (through, method) = (through.name(), method.name());
+            let (backend, method) = (backend.name(), method.name());
             match costs {
                 Ok(costs) => {
                     let steps = [
@@ -149,13 +149,13 @@ impl Report {
                         costs.read_back_ms,
                     ]
                     .map(|step| step.median);
-                    let mut cells = vec![through.to_owned(), method.to_owned()];
+                    let mut cells = vec![backend.to_owned(), method.to_owned()];
                     cells.extend(steps.map(digits));
                     cells.push(digits(steps.iter().sum()));
                     table.rows.push(cells);
                 }
                 Err(reason) => {
-                    let _ = writeln!(missing, "{through}, {method}: {reason}");
+                    let _ = writeln!(missing, "{backend}, {method}: {reason}");
                 }
             }
         }

@@ -14,21 +14,21 @@ use super::osmesa::OsMesa;
 use super::{Placement, Screen, ScreenError, check, room};
 use crate::Image;
 
-/// What makes the context of an [`Offscreen`].
+/// The library that makes the context of an [`Offscreen`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Through {
+pub enum Backend {
     /// EGL on a device, without a surface: libEGL.
     Egl,
     /// Mesa's software renderer as a library: libOSMesa.
     OsMesa,
 }
 
-impl Through {
+impl Backend {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Through::Egl => "egl",
-            Through::OsMesa => "osmesa",
+            Backend::Egl => "egl",
+            Backend::OsMesa => "osmesa",
         }
     }
 
@@ -37,10 +37,10 @@ impl Through {
         room::ask(size)?;
         Ok(match self {
             #[cfg(not(target_vendor = "apple"))]
-            Through::Egl => Box::new(Egl::open(profile)?),
+            Backend::Egl => Box::new(Egl::open(profile)?),
             #[cfg(target_vendor = "apple")]
-            Through::Egl => return Err(ScreenError::NoEgl),
-            Through::OsMesa => Box::new(OsMesa::open(profile)?),
+            Backend::Egl => return Err(ScreenError::NoEgl),
+            Backend::OsMesa => Box::new(OsMesa::open(profile)?),
         })
     }
 }
@@ -59,13 +59,13 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
-    /// A context through `through`, with all that pictures of `size` × `size` pixels need.
+    /// A context of `backend`, with all that pictures of `size` × `size` pixels need.
     ///
     /// # Errors
     /// [`ScreenError::Missing`] and [`ScreenError::Context`] where there is no such context, else
     /// those of [`Screen::new`].
-    pub fn open(through: Through, size: u32) -> Result<Offscreen, ScreenError> {
-        let context = through.open(Profile::Core, size)?;
+    pub fn open(backend: Backend, size: u32) -> Result<Offscreen, ScreenError> {
+        let context = backend.open(Profile::Core, size)?;
         context.make_current()?;
         let made = Offscreen::make(context.as_ref(), size);
         context.release();

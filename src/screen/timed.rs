@@ -10,7 +10,7 @@ use glow::HasContext as _;
 
 use super::context::{Context, Profile};
 use super::offscreen::Framebuffer;
-use super::{CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError, Through};
+use super::{Backend, CLEAR_COLOR, FRAGMENT_CAPABILITIES, Placement, Screen, ScreenError};
 use super::{check, set_unpacking};
 use crate::{Image, memory};
 
@@ -132,7 +132,7 @@ impl TimedScreen {
     /// # Errors
     /// Those of [`Offscreen::open`](super::Offscreen::open).
     pub(crate) fn open(
-        through: Through,
+        backend: Backend,
         method: DrawMethod,
         size: u32,
     ) -> Result<TimedScreen, ScreenError> {
@@ -140,7 +140,7 @@ impl TimedScreen {
             DrawMethod::Texture => Profile::Core,
             DrawMethod::DrawPixels => Profile::Compatibility,
         };
-        let context = through.open(profile, size)?;
+        let context = backend.open(profile, size)?;
         context.make_current()?;
         let made = TimedScreen::make(context.as_ref(), method, size);
         context.release();
@@ -289,10 +289,10 @@ mod tests {
     fn both_methods_show_the_same_bytes() {
         // The second has another value at every sample.
         let pictures = [ramp(|i| i), ramp(|i| 12287 - i)];
-        for through in [Through::Egl, Through::OsMesa] {
+        for backend in [Backend::Egl, Backend::OsMesa] {
             for method in DrawMethod::ALL {
-                let what = format!("{} {}", through.name(), method.name());
-                let mut screen = match TimedScreen::open(through, method, 64) {
+                let what = format!("{} {}", backend.name(), method.name());
+                let mut screen = match TimedScreen::open(backend, method, 64) {
                     Err(error @ ScreenError::Missing { .. }) => {
                         assert!(std::env::var_os("CI").is_none(), "{error}");
                         writeln!(std::io::stderr(), "skipped: {error}").unwrap();

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::Write as _;
 use std::process::{Command, Output};
 
-use firsthit::screen::{Offscreen, ScreenError, Through};
+use firsthit::screen::{Backend, Offscreen, ScreenError};
 use tempfile::TempDir;
 
 /// Says that a test leaves something out for want of a library, which CI must have: there it fails.
@@ -19,23 +19,23 @@ pub(crate) fn skipped(error: &dyn Display) {
 
 /// An offscreen for pictures of this size, or `None` where its library is not installed: never so
 /// in CI.
-pub(crate) fn open(through: Through, size: u32) -> Option<Offscreen> {
-    match Offscreen::open(through, size) {
+pub(crate) fn open(backend: Backend, size: u32) -> Option<Offscreen> {
+    match Offscreen::open(backend, size) {
         Ok(offscreen) => Some(offscreen),
         Err(error @ ScreenError::Missing { .. }) => {
             skipped(&error);
             None
         }
-        Err(error) => panic!("{}: {error}", through.name()),
+        Err(error) => panic!("{}: {error}", backend.name()),
     }
 }
 
-/// The names of the ways through OpenGL that are open here.
+/// The names of the backends that are installed here.
 #[cfg(target_os = "linux")]
-pub(crate) fn ways() -> Vec<&'static str> {
-    let all = [Through::Egl, Through::OsMesa].into_iter();
-    let open = all.filter(|&through| open(through, 8).is_some());
-    open.map(Through::name).collect()
+pub(crate) fn backends() -> Vec<&'static str> {
+    let all = [Backend::Egl, Backend::OsMesa].into_iter();
+    let installed = all.filter(|&backend| open(backend, 8).is_some());
+    installed.map(Backend::name).collect()
 }
 
 /// The names in `folder`, hidden ones too, in order.
