@@ -4,8 +4,8 @@ mod arguments;
 mod capture;
 mod compare;
 mod explain;
-mod passage;
 mod report;
+mod round_trip;
 mod view;
 mod waiting;
 

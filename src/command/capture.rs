@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressFinish};
 
 use super::Failure;
 use super::arguments::{AngleArguments, PictureArguments, frames, stage};
-use super::passage::{Passage, Way};
+use super::round_trip::{RoundTrip, Through};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// What the pixels pass through before they are written; egl if not given, else osmesa, else
     /// none, whichever works first
     #[arg(long, value_name = "WAY", value_enum)]
-    through: Option<Way>,
+    through: Option<Through>,
     /// The file to write: .png (8 bits, as displayed), .exr (every float bit for bit), .apng (an
     /// animation of --frames); with --frames, {} in the name of a .png or .exr becomes the
     /// frame's number
@@ -109,13 +109,13 @@ fn wrong(message: impl std::fmt::Display) -> clap::Error {
     super::wrong::<Arguments>("firsthit capture", message)
 }
 
-/// The way from an angle to the picture that is written.
+/// What makes the picture of an angle that is written.
 struct Capture {
     scene: Scene,
     stage: Stage,
     tracer: Tracer,
     image: Image,
-    passage: Passage,
+    round_trip: RoundTrip,
 }
 
 impl Capture {
@@ -125,14 +125,15 @@ impl Capture {
         Ok(())
     }
 
-    fn passed(&mut self) -> Result<&Image, Failure> {
-        self.passage.pass(&self.image)?;
+    /// The picture after its round trip.
+    fn sent(&mut self) -> Result<&Image, Failure> {
+        self.round_trip.send(&self.image)?;
         Ok(&self.image)
     }
 
     fn picture(&mut self, alpha: f64) -> Result<&Image, Failure> {
         self.trace(alpha)?;
-        self.passed()
+        self.sent()
     }
 }
 
@@ -145,13 +146,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         stage: arguments.stage,
         tracer: Tracer::new(picture.kernel, picture.threads())?,
         image: Image::new(size)?,
-        passage: Passage::open(arguments.through, size)?,
+        round_trip: RoundTrip::open(arguments.through, size)?,
     };
     match job {
         Job::Picture { alpha, path } => {
             let progress = capture.tracer.progress();
             while_watched(size, &progress, || capture.trace(alpha))?;
-            capture.passed()?.save(path)?;
+            capture.sent()?.save(path)?;
         }
         Job::Pictures { frames, pattern } => {
             let digits = frames.end().to_string().len();
@@ -169,7 +170,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     // Said last: where the capture fails, one line says why, and no other.
-    if let Some(note) = capture.passage.note() {
+    if let Some(note) = capture.round_trip.note() {
         super::say(&note);
     }
     Ok(())

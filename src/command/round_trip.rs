@@ -1,4 +1,4 @@
-//! What traced pictures pass through before they are written.
+//! The round trip of a traced picture through OpenGL, before it is written.
 
 use clap::ValueEnum;
 use firsthit::Image;
@@ -8,7 +8,7 @@ use super::waiting::Waiting;
 
 /// The values of `--through`.
 #[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Way {
+pub(crate) enum Through {
     /// A texture and a quad in an offscreen OpenGL context of EGL
     Egl,
     /// The same in OSMesa
@@ -17,83 +17,83 @@ pub(crate) enum Way {
     None,
 }
 
-/// The way that is taken, open for pictures of one size.
-pub(crate) struct Passage {
+/// The backend that is used, open for pictures of one size.
+pub(crate) struct RoundTrip {
     screen: Option<(Backend, Offscreen)>,
-    /// The ways to go on with where this one fails; none if it was asked for.
+    /// The backends to try where this one fails; none if it was asked for.
     others: Vec<Backend>,
-    /// Why those before it were not taken; `None` if it was asked for.
+    /// Why those before it are not used; `None` if it was asked for.
     reasons: Option<String>,
     size: u32,
 }
 
-impl Passage {
-    /// The way that is asked for, else EGL, else OSMesa, else none.
-    pub(crate) fn open(way: Option<Way>, size: u32) -> Result<Passage, ScreenError> {
-        let mut passage = Passage {
+impl RoundTrip {
+    /// Through the backend that is asked for, else EGL, else OSMesa, else none.
+    pub(crate) fn open(through: Option<Through>, size: u32) -> Result<RoundTrip, ScreenError> {
+        let mut round_trip = RoundTrip {
             screen: None,
             others: Vec::new(),
             reasons: None,
             size,
         };
-        match way {
-            Some(Way::Egl) => passage.enter(Backend::Egl)?,
-            Some(Way::Osmesa) => passage.enter(Backend::OsMesa)?,
-            Some(Way::None) => {}
+        match through {
+            Some(Through::Egl) => round_trip.open_backend(Backend::Egl)?,
+            Some(Through::Osmesa) => round_trip.open_backend(Backend::OsMesa)?,
+            Some(Through::None) => {}
             None => {
-                passage.others = vec![Backend::OsMesa, Backend::Egl];
-                passage.reasons = Some(String::new());
-                passage.enter_next();
+                round_trip.others = vec![Backend::OsMesa, Backend::Egl];
+                round_trip.reasons = Some(String::new());
+                round_trip.open_next();
             }
         }
-        Ok(passage)
+        Ok(round_trip)
     }
 
-    fn enter(&mut self, backend: Backend) -> Result<(), ScreenError> {
+    fn open_backend(&mut self, backend: Backend) -> Result<(), ScreenError> {
         let _waiting = Waiting::for_driver(self.size);
         self.screen = Some((backend, Offscreen::open(backend, self.size)?));
         Ok(())
     }
 
-    /// Takes the next way that is open, or none.
-    fn enter_next(&mut self) {
+    /// Opens the next backend that works, or none.
+    fn open_next(&mut self) {
         while let Some(backend) = self.others.pop() {
-            match self.enter(backend) {
+            match self.open_backend(backend) {
                 Ok(()) => return,
-                Err(error) => self.leave(backend, &error),
+                Err(error) => self.reject(backend, &error),
             }
         }
     }
 
-    /// Notes why a way is not taken.
-    fn leave(&mut self, backend: Backend, error: &ScreenError) {
+    /// Notes why a backend is not used.
+    fn reject(&mut self, backend: Backend, error: &ScreenError) {
         let name = backend.name();
         let reasons = self.reasons.get_or_insert_default();
         reasons.push_str(&format!("; not through {name}: {error}"));
     }
 
-    /// Sends a picture through. At the other end it is the same, bit for bit, or there is an error;
-    /// where the way was not asked for, the next one is taken then.
-    pub(crate) fn pass(&mut self, image: &Image) -> Result<(), ScreenError> {
+    /// Draws a picture and reads it back. It comes back the same, bit for bit, or there is an
+    /// error; where the backend was not asked for, the next one is tried then.
+    pub(crate) fn send(&mut self, image: &Image) -> Result<(), ScreenError> {
         while let Some((backend, screen)) = &mut self.screen {
             let waiting = Waiting::for_driver(self.size);
-            let passed = screen.show(image).and_then(|back| compare(image, &back));
+            let sent = screen.show(image).and_then(|back| compare(image, &back));
             drop(waiting);
-            match passed {
+            match sent {
                 Ok(()) => break,
                 Err(error) if self.reasons.is_none() => return Err(error),
                 Err(error) => {
                     let backend = *backend;
                     self.screen = None;
-                    self.leave(backend, &error);
-                    self.enter_next();
+                    self.reject(backend, &error);
+                    self.open_next();
                 }
             }
         }
         Ok(())
     }
 
-    /// Which way was taken and why, unless it was asked for.
+    /// Which backend was used and why, unless it was asked for.
     pub(crate) fn note(&self) -> Option<String> {
         let reasons = self.reasons.as_ref()?;
         Some(match &self.screen {
