@@ -13,6 +13,7 @@ mod comparison;
 mod content;
 mod error;
 mod frames;
+mod hud;
 mod information;
 mod layout;
 #[cfg(all(unix, not(target_vendor = "apple")))]
@@ -27,7 +28,6 @@ mod press;
 mod rect;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
-mod sheet;
 mod snapshot;
 mod tracing;
 mod window;

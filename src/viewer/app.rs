@@ -2,7 +2,7 @@
 
 mod actions;
 mod events;
-mod facts;
+mod hud_values;
 
 use std::time::{Duration, Instant};
 
@@ -16,12 +16,12 @@ use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing};
 use super::content::{Content, Redisplay};
 use super::frames::Meter;
+use super::hud::Hud;
 use super::information::Times;
 use super::playback::Playback;
 use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
-use super::sheet::Sheet;
 use super::tracing::{Frame, Reply, Studio, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
@@ -73,7 +73,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         frame_time: Duration::ZERO,
         meter: Meter::default(),
         title: String::new(),
-        sheet: Sheet::default(),
+        hud: Hud::default(),
         times: Times::default(),
         counts: Counts::default(),
         failure: None,
@@ -115,7 +115,7 @@ struct App<'a> {
     frame_time: Duration,
     meter: Meter,
     title: String,
-    sheet: Sheet,
+    hud: Hud,
     times: Times,
     counts: Counts,
     failure: Option<ViewerError>,
@@ -165,7 +165,7 @@ impl App<'_> {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
             // The next picture is traced over this one, unless its pixels are looked at.
-            if !self.sheet.names_pixels() {
+            if !self.hud.names_pixels() {
                 self.content.give_back(self.wanted());
             }
         }
@@ -178,7 +178,7 @@ impl App<'_> {
         let (Some(view), Some((image, rows))) = (&mut self.view, self.content.to_upload()) else {
             return Ok(false);
         };
-        self.times.upload = view.upload(image, rows, self.sheet.information)?;
+        self.times.upload = view.upload(image, rows, self.hud.information)?;
         self.counts.uploads += 1;
         self.content.uploaded();
         Ok(true)
@@ -228,18 +228,18 @@ impl App<'_> {
             event_loop.set_control_flow(ControlFlow::WaitUntil(until));
             return Ok(());
         }
-        let change = self.sheet.expire(start);
-        let facts = self.facts();
-        let marks = self.marks(&facts);
+        let change = self.hud.expire(start);
+        let values = self.hud_values();
+        let marks = self.marks(&values);
         let Some(view) = &mut self.view else {
             return Ok(());
         };
         if redisplay == Redisplay::Clear {
             return view.clear();
         }
-        let waits = self.sheet.information;
+        let waits = self.hud.information;
         let window = (view.surface(), view.layout());
-        let boards = self.sheet.boards(window, view.cell(), &facts);
+        let boards = self.hud.boards(window, view.cell(), &values);
         let Some(draw) = view.draw((&marks, boards), waits)? else {
             self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
@@ -331,12 +331,12 @@ impl App<'_> {
                 }
                 Reply::Saved(saved) => {
                     let event = saved.map_or_else(Event::NotSaved, Event::Saved);
-                    self.sheet.say(event.to_string());
+                    self.hud.say(event.to_string());
                     (self.report)(event);
                     self.touch();
                 }
                 Reply::Explained(pixel, text) => {
-                    self.sheet.inspect(pixel, text.clone());
+                    self.hud.inspect(pixel, text.clone());
                     (self.report)(Event::Inspected(text));
                     self.touch();
                 }
@@ -344,7 +344,7 @@ impl App<'_> {
                     return Err(error.into());
                 }
                 Reply::Refused(frame, error) => {
-                    self.sheet.say(error.to_string());
+                    self.hud.say(error.to_string());
                     if self.kernel == frame.kernel {
                         self.next_kernel();
                         self.retitle();
@@ -374,7 +374,7 @@ impl App<'_> {
 
     /// Something but the picture looks different now.
     fn touch(&mut self) {
-        let open = self.sheet.has_panel() || self.content.shows_errors();
+        let open = self.hud.has_panel() || self.content.shows_errors();
         if let Some(view) = &mut self.view {
             view.show_panel(open);
         }

@@ -44,7 +44,7 @@ impl App<'_> {
             Action::Errors => self.toggle_errors(),
             Action::NextKernel => self.next_kernel(),
             Action::Information => {
-                self.sheet.information = !self.sheet.information;
+                self.hud.information = !self.hud.information;
                 self.touch();
             }
             Action::Copy => self.copy(),
@@ -53,7 +53,7 @@ impl App<'_> {
                 self.toggle_menu(place);
             }
             Action::Help => {
-                self.sheet.toggle_keys();
+                self.hud.toggle_keys();
                 self.touch();
             }
             Action::Fit => {
@@ -113,9 +113,8 @@ impl App<'_> {
 
     /// Copies the text of the pixel that was clicked on.
     fn copy(&mut self) {
-        let (Some((_, text)), Some(clipboard)) = (self.sheet.inspected(), &mut self.clipboard)
-        else {
-            self.sheet
+        let (Some((_, text)), Some(clipboard)) = (self.hud.inspected(), &mut self.clipboard) else {
+            self.hud
                 .say("nothing to copy: click on a pixel first".to_owned());
             return self.touch();
         };
@@ -123,7 +122,7 @@ impl App<'_> {
             Ok(()) => "copied the text of the clicked pixel".to_owned(),
             Err(error) => format!("not copied: {error}"),
         };
-        self.sheet.say(said);
+        self.hud.say(said);
         self.touch();
     }
 }

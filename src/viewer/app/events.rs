@@ -80,8 +80,8 @@ impl ApplicationHandler for App<'_> {
             }
             WindowEvent::CursorLeft { .. } => {
                 self.pointer.left();
-                if self.sheet.names_pixels() {
-                    self.sheet.unpoint();
+                if self.hud.names_pixels() {
+                    self.hud.unpoint();
                     self.touch();
                 }
             }
@@ -135,7 +135,7 @@ impl App<'_> {
 
     /// Closes what is open, else leaves full screen; whether there was either.
     fn escape(&mut self) -> bool {
-        if self.sheet.close() {
+        if self.hud.close() {
             self.touch();
             return true;
         }
@@ -153,7 +153,7 @@ impl App<'_> {
             Key::Named(NamedKey::PageUp) => false,
             _ => return false,
         };
-        let turned = self.sheet.turn_page(forward);
+        let turned = self.hud.turn_page(forward);
         if turned {
             self.touch();
         }
@@ -162,7 +162,7 @@ impl App<'_> {
 
     /// What the pointer asks for.
     fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
-        if self.sheet.menu.is_some() {
+        if self.hud.menu.is_some() {
             self.point_at_menu(event_loop, gesture);
             return;
         }
@@ -173,7 +173,7 @@ impl App<'_> {
             Gesture::Drag { from, .. } if view.is_over_panel(from) => return,
             Gesture::Drag { by, .. } => view.drag(by),
             Gesture::Wheel { steps, at } if view.is_over_panel(at) => {
-                if !self.sheet.scroll(-SCROLLED * steps as isize) {
+                if !self.hud.scroll(-SCROLLED * steps as isize) {
                     return;
                 }
             }
@@ -183,8 +183,8 @@ impl App<'_> {
                 let over = place.and_then(|place| view.picture_pixel(place));
                 // The first picture does not wait for what lies over it.
                 if over.is_some() && self.counts.draws > 0 {
-                    self.sheet.point(Instant::now());
-                } else if !self.sheet.names_pixels() {
+                    self.hud.point(Instant::now());
+                } else if !self.hud.names_pixels() {
                     return;
                 }
             }
@@ -201,18 +201,18 @@ impl App<'_> {
 
     /// Opens the menu at a pixel of the window, or at the corner, or closes it.
     pub(super) fn toggle_menu(&mut self, place: Option<IVec2>) {
-        if self.sheet.menu.take().is_none()
+        if self.hud.menu.take().is_none()
             && let Some(view) = &self.view
         {
             let place = place.map_or(IVec2::ZERO, |place| view.place_of(place));
-            self.sheet.menu = Some(Menu::open(place));
+            self.hud.menu = Some(Menu::open(place));
         }
         self.touch();
     }
 
     /// What a key does while the menu is open, if it is one of the menu's own.
     fn menu_key(&mut self, event_loop: &ActiveEventLoop, key: &Key) -> bool {
-        let Some(menu) = &mut self.sheet.menu else {
+        let Some(menu) = &mut self.hud.menu else {
             return false;
         };
         match key {
@@ -220,7 +220,7 @@ impl App<'_> {
             Key::Named(NamedKey::ArrowUp) => menu.step(-1),
             Key::Named(NamedKey::Enter) => {
                 let chosen = menu.chosen();
-                self.sheet.menu = None;
+                self.hud.menu = None;
                 if let Some(action) = chosen {
                     self.choose(event_loop, action);
                 }
@@ -241,7 +241,7 @@ impl App<'_> {
 
     /// What the pointer asks for while the menu is open.
     fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
-        let (Some(view), Some(menu)) = (&self.view, &mut self.sheet.menu) else {
+        let (Some(view), Some(menu)) = (&self.view, &mut self.hud.menu) else {
             return;
         };
         let (surface, cell) = (view.surface(), view.cell());
@@ -256,7 +256,7 @@ impl App<'_> {
             Gesture::Drag { .. } => return,
             Gesture::Click { at } => {
                 let action = menu.click(view.place_of(at), surface, cell);
-                self.sheet.menu = None;
+                self.hud.menu = None;
                 if let Some(action) = action {
                     self.choose(event_loop, action);
                 }

@@ -1,5 +1,5 @@
-//! What is written beside the picture and over it: the panel with information, errors and a text to
-//! read, the menu, notes.
+//! The head-up display: what is written beside the picture and over it, in a panel, a menu and
+//! notes.
 
 use std::time::{Duration, Instant};
 
@@ -22,21 +22,21 @@ const READING_TIME: Duration = Duration::from_secs(4);
 /// The column of an explanation and of the information in which the values begin.
 const VALUES: usize = 13;
 
-/// Everything that may be written.
+/// The head-up display.
 #[derive(Debug, Default)]
-pub(super) struct Sheet {
+pub(super) struct Hud {
     pub(super) menu: Option<Menu>,
     pub(super) information: bool,
-    reading: Reading,
+    text: PanelText,
     scroll: Scroll,
     /// The pixel under the pointer is named until then, for the pointer moved.
     pointed: Option<Instant>,
     message: Option<(String, Instant)>,
 }
 
-/// The longer text in the panel.
+/// The longer text of the panel: one at a time.
 #[derive(Debug, Default, PartialEq)]
-enum Reading {
+enum PanelText {
     #[default]
     Nothing,
     Keys,
@@ -44,9 +44,9 @@ enum Reading {
     Pixel(UVec2, String),
 }
 
-/// What the sheet says about the picture; each only where it is shown.
+/// What the head-up display says about the picture; each only where it is shown.
 #[derive(Debug, Default)]
-pub(super) struct Facts {
+pub(super) struct HudValues {
     /// Stage, kernel, α, times.
     pub(super) information: String,
     /// The pixel under the pointer.
@@ -61,10 +61,10 @@ pub(super) struct Facts {
     pub(super) on: Vec<Action>,
 }
 
-impl Sheet {
+impl Hud {
     /// Whether anything stands beside the picture, apart from the errors.
     pub(super) fn has_panel(&self) -> bool {
-        self.information || self.reading != Reading::Nothing
+        self.information || self.text != PanelText::Nothing
     }
 
     /// Whether the pixel under the pointer is named.
@@ -97,32 +97,32 @@ impl Sheet {
 
     /// Shows the keys, or takes them away.
     pub(super) fn toggle_keys(&mut self) {
-        self.read(match self.reading {
-            Reading::Keys => Reading::Nothing,
-            Reading::Nothing | Reading::Pixel(..) => Reading::Keys,
+        self.show_text(match self.text {
+            PanelText::Keys => PanelText::Nothing,
+            PanelText::Nothing | PanelText::Pixel(..) => PanelText::Keys,
         });
     }
 
     /// Shows the text of a pixel that was clicked on.
     pub(super) fn inspect(&mut self, pixel: UVec2, text: String) {
-        self.read(Reading::Pixel(pixel, text));
+        self.show_text(PanelText::Pixel(pixel, text));
     }
 
-    fn read(&mut self, reading: Reading) {
-        self.reading = reading;
+    fn show_text(&mut self, text: PanelText) {
+        self.text = text;
         self.scroll = Scroll::default();
     }
 
     /// The pixel that was clicked on, and its text.
     pub(super) fn inspected(&self) -> Option<(UVec2, &str)> {
-        match &self.reading {
-            Reading::Pixel(pixel, text) => Some((*pixel, text)),
-            Reading::Nothing | Reading::Keys => None,
+        match &self.text {
+            PanelText::Pixel(pixel, text) => Some((*pixel, text)),
+            PanelText::Nothing | PanelText::Keys => None,
         }
     }
 
     pub(super) fn keys_are_shown(&self) -> bool {
-        self.reading == Reading::Keys
+        self.text == PanelText::Keys
     }
 
     /// Closes the menu, else the text that is read; whether one was open.
@@ -130,8 +130,8 @@ impl Sheet {
         if self.menu.take().is_some() {
             return true;
         }
-        let open = self.reading != Reading::Nothing;
-        self.read(Reading::Nothing);
+        let open = self.text != PanelText::Nothing;
+        self.show_text(PanelText::Nothing);
         open
     }
 
@@ -151,21 +151,21 @@ impl Sheet {
         &mut self,
         (surface, layout): (UVec2, Layout),
         cell: UVec2,
-        facts: &Facts,
+        values: &HudValues,
     ) -> Vec<Board> {
         let mut boards = Vec::new();
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
-        let named = Some(facts.pixel.as_str()).filter(|name| !name.is_empty());
+        let named = Some(values.pixel.as_str()).filter(|name| !name.is_empty());
         match layout.panel {
             Some(rect) => {
-                let lines = self.lines(columns(rect, cell), facts);
+                let lines = self.lines(columns(rect, cell), values);
                 let note = message.or(named);
                 boards.push(panel(rect, cell, &lines, note, &mut self.scroll));
             }
             None => {
                 // Not over the pixel that it names.
                 let high = |pointer: IVec2| pointer.y < 4 * cell.y as i32;
-                let at_top = !facts.pointer.is_some_and(high);
+                let at_top = !values.pointer.is_some_and(high);
                 let notes = [(named, at_top), (message, false)];
                 // At the bottom there is room for one: a message, which goes sooner.
                 let notes = notes
@@ -178,13 +178,13 @@ impl Sheet {
             }
         }
         if let Some(menu) = &self.menu {
-            boards.push(menu.board(surface, cell, &facts.on));
+            boards.push(menu.board(surface, cell, &values.on));
         }
         boards
     }
 
     /// The lines of the panel.
-    fn lines(&self, columns: usize, facts: &Facts) -> Vec<Line> {
+    fn lines(&self, columns: usize, values: &HudValues) -> Vec<Line> {
         let mut lines = Vec::new();
         let mut part = |heading: &str, text: Vec<Line>| {
             if !lines.is_empty() {
@@ -196,23 +196,23 @@ impl Sheet {
         if self.information {
             part(
                 "Information",
-                wrap(&facts.information, columns, VALUES, INK),
+                wrap(&values.information, columns, VALUES, INK),
             );
         }
-        if let Some(errors) = &facts.errors {
+        if let Some(errors) = &values.errors {
             let mut text = wrap(errors, columns, 2, INK);
             text.extend(scale());
             part("Errors", text);
         }
-        match &self.reading {
-            Reading::Nothing => {}
-            Reading::Keys => {
+        match &self.text {
+            PanelText::Nothing => {}
+            PanelText::Keys => {
                 let mut text = wrap(&key_table(), columns, DOES, INK);
                 text.push(Line::default());
                 text.extend(wrap(&mouse_table(), columns, DOES, INK));
                 part("Keys and mouse", text);
             }
-            Reading::Pixel(_, text) => {
+            PanelText::Pixel(_, text) => {
                 let mut text = wrap(text, columns, VALUES, INK);
                 text.push(Line::default());
                 text.extend(wrap("Ctrl+C copies this, Esc closes it", columns, 0, DIM));
@@ -279,14 +279,14 @@ mod tests {
 
     #[test]
     fn only_one_text_is_read_at_a_time_and_esc_closes_it() {
-        let mut sheet = Sheet::default();
-        sheet.toggle_keys();
-        sheet.inspect(UVec2::new(3, 4), "pixel".to_owned());
-        assert!(!sheet.keys_are_shown() && sheet.has_panel());
-        assert_eq!(sheet.inspected(), Some((UVec2::new(3, 4), "pixel")));
-        sheet.menu = Some(Menu::open(IVec2::ZERO));
-        assert!(sheet.close() && sheet.inspected().is_some());
-        assert!(sheet.close() && !sheet.has_panel());
-        assert!(!sheet.close());
+        let mut hud = Hud::default();
+        hud.toggle_keys();
+        hud.inspect(UVec2::new(3, 4), "pixel".to_owned());
+        assert!(!hud.keys_are_shown() && hud.has_panel());
+        assert_eq!(hud.inspected(), Some((UVec2::new(3, 4), "pixel")));
+        hud.menu = Some(Menu::open(IVec2::ZERO));
+        assert!(hud.close() && hud.inspected().is_some());
+        assert!(hud.close() && !hud.has_panel());
+        assert!(!hud.close());
     }
 }
