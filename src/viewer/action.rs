@@ -38,12 +38,12 @@ pub(super) struct Binding {
     /// What the label leaves open, if anything.
     detail: &'static str,
     pub(super) action: Action,
-    /// The characters that mean it, letters in lower case.
+    /// Its logical keys with a character, letters in lower case.
     pub(super) characters: &'static [char],
-    /// The keys without a character that mean it.
+    /// Its logical keys without a character.
     pub(super) named: &'static [NamedKey],
-    /// The places on the keyboard that stand for it, whatever is printed there.
-    pub(super) places: &'static [KeyCode],
+    /// Its physical keys, whatever is printed on them.
+    pub(super) physical_keys: &'static [KeyCode],
     /// Whether Shift must be down, must not be, or does not matter.
     pub(super) shift: Option<bool>,
     /// Whether Ctrl must be down; else it must not be.
@@ -61,7 +61,7 @@ impl Binding {
             action,
             characters: &[],
             named: &[],
-            places: &[],
+            physical_keys: &[],
             shift: None,
             ctrl: false,
             repeats: false,
@@ -72,11 +72,11 @@ impl Binding {
         stage: Stage,
         keys: &'static str,
         characters: &'static [char],
-        places: &'static [KeyCode],
+        physical_keys: &'static [KeyCode],
     ) -> Binding {
         Binding {
             characters,
-            places,
+            physical_keys,
             ..Binding::new(keys, stage.title(), Action::Stage(stage))
         }
     }
@@ -138,75 +138,75 @@ pub(super) const BINDINGS: &[Binding] = &[
     Binding {
         characters: &['0'],
         named: &[N::Home],
-        places: &[C::Digit0, C::Numpad0],
+        physical_keys: &[C::Digit0, C::Numpad0],
         detail: "α = 0",
         ..Binding::new("0, Home", "Reset angle", A::Zero)
     },
     Binding {
         characters: &['s'],
-        places: &[C::KeyS],
+        physical_keys: &[C::KeyS],
         shift: Some(false),
         detail: "the picture as traced, in 8 bits",
         ..Binding::new("S", "Save PNG", A::SavePng)
     },
     Binding {
         characters: &['s'],
-        places: &[C::KeyS],
+        physical_keys: &[C::KeyS],
         shift: Some(true),
         detail: "the picture as traced, every bit",
         ..Binding::new("Shift+S", "Save EXR", A::SaveExr)
     },
     Binding {
         characters: &['e'],
-        places: &[C::KeyE],
+        physical_keys: &[C::KeyE],
         detail: "this kernel against reference",
         ..Binding::new("E", "Show errors", A::Errors)
     },
     Binding {
         characters: &['k'],
-        places: &[C::KeyK],
+        physical_keys: &[C::KeyK],
         ..Binding::new("K", "Next kernel", A::NextKernel)
     },
     Binding {
         characters: &['i'],
-        places: &[C::KeyI],
+        physical_keys: &[C::KeyI],
         detail: "stage, kernel, α, times",
         ..Binding::new("I", "Information", A::Information)
     },
     Binding {
         characters: &['c'],
-        places: &[C::KeyC],
+        physical_keys: &[C::KeyC],
         ctrl: true,
         detail: "of the clicked pixel",
         ..Binding::new("Ctrl+C", "Copy pixel text", A::Copy)
     },
     Binding {
         characters: &['z'],
-        places: &[C::KeyZ],
+        physical_keys: &[C::KeyZ],
         detail: "after wheel and drag",
         ..Binding::new("Z", "Fit to window", A::Fit)
     },
     Binding {
         characters: &['f'],
-        places: &[C::KeyF],
+        physical_keys: &[C::KeyF],
         ..Binding::new("F", "Full screen", A::FullScreen)
     },
     Binding {
         characters: &['m'],
-        places: &[C::KeyM],
+        physical_keys: &[C::KeyM],
         detail: "also on the right button",
         ..Binding::new("M", "Menu", A::Menu)
     },
     Binding {
         characters: &['h'],
         named: &[N::F1],
-        places: &[C::KeyH],
+        physical_keys: &[C::KeyH],
         ..Binding::new("H, F1", "Keys", A::Help)
     },
     Binding {
         characters: &['q'],
         named: &[N::Escape],
-        places: &[C::KeyQ],
+        physical_keys: &[C::KeyQ],
         detail: "Esc closes and leaves full screen first",
         ..Binding::new("Q, Esc", "Quit", A::Leave)
     },

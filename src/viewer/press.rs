@@ -7,11 +7,11 @@ use super::action::{Action, BINDINGS, Binding};
 /// A key going down.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Press<'a> {
-    /// What the key means in the person's layout.
-    pub(super) meaning: &'a Key,
-    /// Where it lies on the keyboard.
-    pub(super) place: PhysicalKey,
-    /// On which part of the keyboard its meaning lies.
+    /// The key as the keyboard layout names it.
+    pub(super) logical_key: &'a Key,
+    /// The key by its place on the keyboard, whatever the layout.
+    pub(super) physical_key: PhysicalKey,
+    /// On which part of the keyboard the logical key lies.
     pub(super) location: KeyLocation,
     pub(super) modifiers: ModifiersState,
     /// It is held down.
@@ -21,25 +21,27 @@ pub(super) struct Press<'a> {
 impl Press<'_> {
     /// The action it asks for, if any.
     ///
-    /// What a key means decides where it means a letter, a digit or a key of its own: on-screen
-    /// keyboards and programs that type report such keys at false places. Otherwise its place
-    /// comes first: the digit row of a French keyboard means `&é"'(-è`, a keypad without
-    /// NumLock means arrows, and the letters of a Cyrillic keyboard are none of ours.
+    /// The logical key decides where it is an ASCII letter, a digit or a key without a character:
+    /// on-screen keyboards and programs that type report such keys with false physical keys.
+    /// Otherwise the physical key comes first: the digit row of a French keyboard gives `&é"'(-è`,
+    /// a keypad without NumLock gives arrows, and no binding has the letters of a Cyrillic
+    /// keyboard.
     pub(super) fn action(&self) -> Option<Action> {
         let others = ModifiersState::ALT | ModifiersState::SUPER;
         if self.modifiers.intersects(others) {
             return None;
         }
-        let certain = match self.meaning {
+        let certain = match self.logical_key {
             Key::Character(text) => text.chars().all(|c| c.is_ascii_alphanumeric()),
             Key::Named(_) => self.location != KeyLocation::Numpad,
             Key::Unidentified(_) | Key::Dead(_) => false,
         };
-        let by_meaning = || self.find(|binding| self.means(binding));
+        let by_logical_key = || self.find(|binding| self.matches_logical_key(binding));
         let binding = if certain {
-            by_meaning()
+            by_logical_key()
         } else {
-            self.find(|binding| self.lies(binding)).or_else(by_meaning)
+            self.find(|binding| self.matches_physical_key(binding))
+                .or_else(by_logical_key)
         };
         binding
             .filter(|binding| binding.repeats || !self.repeat)
@@ -55,8 +57,8 @@ impl Press<'_> {
             .find(|binding| matches(binding))
     }
 
-    fn means(&self, binding: &Binding) -> bool {
-        match self.meaning {
+    fn matches_logical_key(&self, binding: &Binding) -> bool {
+        match self.logical_key {
             Key::Character(text) => {
                 let mut characters = text.chars();
                 let first = characters.next().map(|c| c.to_ascii_lowercase());
@@ -68,8 +70,8 @@ impl Press<'_> {
         }
     }
 
-    fn lies(&self, binding: &Binding) -> bool {
-        matches!(self.place, PhysicalKey::Code(code) if binding.places.contains(&code))
+    fn matches_physical_key(&self, binding: &Binding) -> bool {
+        matches!(self.physical_key, PhysicalKey::Code(code) if binding.physical_keys.contains(&code))
     }
 }
 
@@ -81,38 +83,43 @@ mod tests {
     use NamedKey as N;
     use winit::keyboard::{KeyCode as C, NamedKey, NativeKey};
 
-    fn press(meaning: Key, place: C) -> Option<Action> {
+    fn press(logical_key: Key, physical_key: C) -> Option<Action> {
         held(
-            meaning,
-            place,
+            logical_key,
+            physical_key,
             KeyLocation::Standard,
             ModifiersState::empty(),
         )
     }
 
-    fn shifted(meaning: &str, place: C) -> Option<Action> {
+    fn shifted(logical_key: &str, physical_key: C) -> Option<Action> {
         held(
-            character(meaning),
-            place,
+            character(logical_key),
+            physical_key,
             KeyLocation::Standard,
             ModifiersState::SHIFT,
         )
     }
 
-    fn keypad(meaning: Key, place: C) -> Option<Action> {
-        held(meaning, place, KeyLocation::Numpad, ModifiersState::empty())
+    fn keypad(logical_key: Key, physical_key: C) -> Option<Action> {
+        held(
+            logical_key,
+            physical_key,
+            KeyLocation::Numpad,
+            ModifiersState::empty(),
+        )
     }
 
     fn held(
-        meaning: Key,
-        place: C,
+        logical_key: Key,
+        physical_key: C,
         location: KeyLocation,
         modifiers: ModifiersState,
     ) -> Option<Action> {
-        let place = PhysicalKey::Code(place);
+        let physical_key = PhysicalKey::Code(physical_key);
         Press {
-            meaning: &meaning,
-            place,
+            logical_key: &logical_key,
+            physical_key,
             location,
             modifiers,
             repeat: false,
@@ -161,8 +168,12 @@ mod tests {
             let digit = character(&stage.number().to_string());
             assert_eq!(press(digit.clone(), ROW[i]), chosen);
             assert_eq!(keypad(digit.clone(), PAD[i]), chosen);
-            assert_eq!(press(digit.clone(), C::Escape), chosen, "a false place");
-            assert_eq!(press(digit, C::Digit0), chosen, "a false place");
+            assert_eq!(
+                press(digit.clone(), C::Escape),
+                chosen,
+                "a false physical key"
+            );
+            assert_eq!(press(digit, C::Digit0), chosen, "a false physical key");
             assert_eq!(press(character(french[i]), ROW[i]), chosen);
             assert_eq!(press(character(czech[i]), ROW[i]), chosen);
             assert_eq!(keypad(Key::Named(unlocked[i]), PAD[i]), chosen);
@@ -174,17 +185,21 @@ mod tests {
         }
         assert_eq!(press(character("à"), C::Digit0), Some(A::Zero));
         assert_eq!(keypad(Key::Named(N::Insert), C::Numpad0), Some(A::Zero));
-        assert_eq!(press(character("8"), C::Digit1), None, "a false place");
+        assert_eq!(
+            press(character("8"), C::Digit1),
+            None,
+            "a false physical key"
+        );
     }
 
     #[test]
-    fn letters_go_by_their_meaning_and_only_foreign_ones_by_their_place() {
+    fn letters_go_by_their_logical_key_and_only_foreign_ones_by_their_physical_key() {
         assert_eq!(press(character("q"), C::KeyA), Some(A::Leave));
         assert_eq!(press(character("a"), C::KeyQ), None);
         assert_eq!(
             press(character("q"), C::Digit1),
             Some(A::Leave),
-            "a false place"
+            "a false physical key"
         );
         assert_eq!(press(character("й"), C::KeyQ), Some(A::Leave));
         assert_eq!(press(character("ы"), C::KeyS), Some(A::SavePng));
@@ -211,14 +226,14 @@ mod tests {
         ] {
             assert_eq!(press(Key::Named(named), C::Digit3), Some(action));
         }
-        for (text, place, action) in [
+        for (text, physical_key, action) in [
             (".", C::Period, A::NextFrame),
             (",", C::Comma, A::PreviousFrame),
             ("=", C::Equal, A::Faster),
             ("-", C::Minus, A::Slower),
             ("0", C::Digit0, A::Zero),
         ] {
-            assert_eq!(press(character(text), place), Some(action));
+            assert_eq!(press(character(text), physical_key), Some(action));
         }
         assert_eq!(shifted("+", C::Equal), Some(A::Faster));
         assert_eq!(keypad(character("+"), C::NumpadAdd), Some(A::Faster));
@@ -228,9 +243,9 @@ mod tests {
 
     #[test]
     fn keys_of_the_desktop_are_not_ours() {
-        let ctrl = |meaning, place| {
+        let ctrl = |logical_key, physical_key| {
             let (location, ctrl) = (KeyLocation::Standard, ModifiersState::CONTROL);
-            held(character(meaning), place, location, ctrl)
+            held(character(logical_key), physical_key, location, ctrl)
         };
         assert_eq!(ctrl("c", C::KeyC), Some(A::Copy));
         assert_eq!(ctrl("с", C::KeyC), Some(A::Copy), "a Cyrillic keyboard");
@@ -251,7 +266,7 @@ mod tests {
     #[test]
     fn holding_a_key_repeats_only_what_moves() {
         for binding in BINDINGS {
-            let meaning = match (binding.characters, binding.named) {
+            let logical_key = match (binding.characters, binding.named) {
                 ([first, ..], _) => character(&first.to_string()),
                 (_, [first, ..]) => Key::Named(*first),
                 _ => unreachable!("{} is on no key", binding.keys),
@@ -261,8 +276,8 @@ mod tests {
                 modifiers.set(ModifiersState::SHIFT, binding.shift == Some(true));
                 modifiers.set(ModifiersState::CONTROL, binding.ctrl);
                 Press {
-                    meaning: &meaning,
-                    place: PhysicalKey::Code(C::F35),
+                    logical_key: &logical_key,
+                    physical_key: PhysicalKey::Code(C::F35),
                     location: KeyLocation::Standard,
                     modifiers,
                     repeat,

@@ -124,8 +124,8 @@ impl ApplicationHandler for App<'_> {
 impl App<'_> {
     fn pressed(&self, event: &KeyEvent) -> Option<Action> {
         let press = Press {
-            meaning: &event.logical_key,
-            place: event.physical_key,
+            logical_key: &event.logical_key,
+            physical_key: event.physical_key,
             location: event.location,
             modifiers: self.modifiers,
             repeat: event.repeat,
