@@ -22,7 +22,7 @@ use super::playback::Playback;
 use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
-use super::tracing::{Frame, Reply, Studio, Tracing};
+use super::tracing::{Frame, FrameTracer, Reply, Tracing};
 use super::window::View;
 use super::{Counts, Event, Options, ViewerError};
 
@@ -37,7 +37,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// Opens the viewer and stays until it is left.
 pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
     let started = Instant::now();
-    let studio = Studio::new(&options)?;
+    let frame_tracer = FrameTracer::new(&options)?;
     let event_loop = event_loop()?;
     room::ask(options.size)?;
     let proxy = event_loop.create_proxy();
@@ -47,7 +47,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
             let _ = proxy.send_event(());
         })?
     };
-    let tracing = Tracing::start(studio, move || {
+    let tracing = Tracing::start(frame_tracer, move || {
         // Without an event loop nobody waits for the picture.
         let _ = proxy.send_event(());
     })?;

@@ -57,8 +57,8 @@ pub(super) enum Reply {
     Failed(ViewerError),
 }
 
-/// The tracer, and the pictures it writes to.
-pub(super) struct Studio {
+/// A tracer of frames with a pool of pictures to trace them into.
+pub(super) struct FrameTracer {
     scene: Scene,
     tracer: Tracer,
     threads: usize,
@@ -71,11 +71,11 @@ pub(super) struct Studio {
     traces: u64,
 }
 
-impl Studio {
+impl FrameTracer {
     /// # Errors
     /// Where there are no threads, or no room for the picture.
-    pub(super) fn new(options: &Options) -> Result<Studio, ViewerError> {
-        Ok(Studio {
+    pub(super) fn new(options: &Options) -> Result<FrameTracer, ViewerError> {
+        Ok(FrameTracer {
             scene: options.scene.clone(),
             tracer: Tracer::new(options.kernel, options.threads)?,
             threads: options.threads,
@@ -162,19 +162,19 @@ impl Tracing {
     /// # Errors
     /// Where the system has no thread left.
     pub(super) fn start(
-        mut studio: Studio,
+        mut frame_tracer: FrameTracer,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Tracing, ViewerError> {
         let worker = Worker::start("tracing", wake, move |task, reply| {
             let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, _)) = task;
             let answer = match task {
-                Task::Trace(_) => studio
+                Task::Trace(_) => frame_tracer
                     .trace(frame)
                     .map(|(traced, image)| Reply::Traced(traced, image)),
-                Task::Save(_, format) => studio
+                Task::Save(_, format) => frame_tracer
                     .trace(frame)
                     .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, format))),
-                Task::Explain(_, pixel) => studio
+                Task::Explain(_, pixel) => frame_tracer
                     .explain(frame, pixel)
                     .map(|text| Reply::Explained(pixel, text)),
             };
@@ -184,7 +184,7 @@ impl Tracing {
                 }
                 error => Reply::Failed(error),
             });
-            reply((studio.traces, answer));
+            reply((frame_tracer.traces, answer));
         })
         .map_err(ViewerError::Thread)?;
         Ok(Tracing {
