@@ -12,7 +12,7 @@ mod clipboard;
 mod comparison;
 mod content;
 mod error;
-mod frames;
+mod frame_rate;
 mod hud;
 mod information;
 mod layout;

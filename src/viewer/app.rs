@@ -15,7 +15,7 @@ use crate::{Kernel, Stage};
 use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing};
 use super::content::{Content, Redisplay};
-use super::frames::Meter;
+use super::frame_rate::FrameRate;
 use super::hud::Hud;
 use super::information::Times;
 use super::playback::Playback;
@@ -71,7 +71,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         occluded: false,
         minimized: false,
         frame_time: Duration::ZERO,
-        meter: Meter::default(),
+        frame_rate: FrameRate::default(),
         title: String::new(),
         hud: Hud::default(),
         times: Times::default(),
@@ -113,7 +113,7 @@ struct App<'a> {
     minimized: bool,
     /// How long the display shows a frame.
     frame_time: Duration,
-    meter: Meter,
+    frame_rate: FrameRate,
     title: String,
     hud: Hud,
     times: Times,
@@ -201,7 +201,7 @@ impl App<'_> {
         event_loop.set_control_flow(ControlFlow::Wait);
         if !self.visible() {
             self.playback.hold();
-            self.meter.stop();
+            self.frame_rate.stop();
             if self.minimized {
                 event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             }
@@ -246,7 +246,7 @@ impl App<'_> {
             return Ok(());
         };
         self.times.draw = draw;
-        self.times.display = self.meter.rate();
+        self.times.display = self.frame_rate.per_second();
         self.counts.draws += 1;
         if self.counts.draws == 1 {
             (self.report)(Event::FirstFrame {
@@ -254,7 +254,7 @@ impl App<'_> {
                 renderer: view.renderer().to_owned(),
             });
         }
-        if self.playing() && self.meter.frame(start) {
+        if self.playing() && self.frame_rate.count(start) {
             self.look_around();
         }
         self.next_frame = start + self.frame_time;
@@ -400,7 +400,7 @@ impl App<'_> {
         let Some(view) = &self.view else {
             return;
         };
-        let tail = match (self.stage, self.meter.rate()) {
+        let tail = match (self.stage, self.frame_rate.per_second()) {
             (Stage::Animation, _) if self.playback.paused() => " — paused".to_owned(),
             (Stage::Animation, Some(rate)) => format!(" — {rate:.0} fps"),
             _ => String::new(),

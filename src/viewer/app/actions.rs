@@ -70,7 +70,7 @@ impl App<'_> {
             Action::Leave => event_loop.exit(),
         }
         if !self.playing() {
-            self.meter.stop();
+            self.frame_rate.stop();
         }
         self.retitle();
         if self.playing() {
