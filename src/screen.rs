@@ -14,6 +14,7 @@
 #[cfg(feature = "program")]
 mod check;
 mod context;
+pub(crate) mod driver_limits;
 #[cfg(not(target_vendor = "apple"))]
 mod egl;
 mod error;
@@ -23,7 +24,6 @@ mod offscreen;
 mod osmesa;
 mod placement;
 mod program;
-pub(crate) mod room;
 #[cfg(feature = "program")]
 mod timed;
 

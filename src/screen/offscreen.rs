@@ -11,7 +11,7 @@ use super::context::{Context, Profile};
 #[cfg(not(target_vendor = "apple"))]
 use super::egl::Egl;
 use super::osmesa::OsMesa;
-use super::{Placement, Screen, ScreenError, check, room};
+use super::{Placement, Screen, ScreenError, check, driver_limits};
 use crate::Image;
 
 /// The library that makes the context of an [`Offscreen`].
@@ -34,7 +34,7 @@ impl Backend {
 
     /// A context for pictures of `size` × `size` pixels.
     pub(super) fn open(self, profile: Profile, size: u32) -> Result<Box<dyn Context>, ScreenError> {
-        room::ask(size)?;
+        driver_limits::check(size)?;
         Ok(match self {
             #[cfg(not(target_vendor = "apple"))]
             Backend::Egl => Box::new(Egl::open(profile)?),

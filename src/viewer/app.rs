@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
-use crate::screen::room;
+use crate::screen::driver_limits;
 use crate::{Kernel, Stage};
 
 use super::clipboard::Clipboard;
@@ -39,7 +39,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
     let started = Instant::now();
     let frame_tracer = FrameTracer::new(&options)?;
     let event_loop = event_loop()?;
-    room::ask(options.size)?;
+    driver_limits::check(options.size)?;
     let proxy = event_loop.create_proxy();
     let comparing = {
         let proxy = proxy.clone();

@@ -1,5 +1,5 @@
-//! What an OpenGL driver takes for granted: where the system refuses it memory or threads, drivers
-//! crash, or wait for ever.
+//! The memory and the threads that an OpenGL driver takes for granted: where the system refuses
+//! them, drivers crash, or wait for ever.
 
 use std::sync::mpsc;
 use std::thread::{self, Builder};
@@ -20,11 +20,12 @@ const BYTES_A_PIXEL: u64 = 64;
 const MOST_RENDERERS: usize = 32;
 const OTHER_THREADS: usize = 4;
 
-/// Asks the system for what a driver will, for pictures of `size` × `size` pixels.
+/// Checks that the system grants what a driver will ask for, for pictures of `size` × `size`
+/// pixels.
 ///
 /// # Errors
 /// [`ScreenError::Addresses`] and [`ScreenError::Threads`] where it is refused.
-pub(crate) fn ask(size: u32) -> Result<(), ScreenError> {
+pub(crate) fn check(size: u32) -> Result<(), ScreenError> {
     #[cfg(target_os = "linux")]
     addresses(size)?;
     let _ = size;
