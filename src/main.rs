@@ -1,19 +1,19 @@
 //! The command line, nothing else.
 
 mod command;
-mod ending;
+mod exit;
 
 use std::env;
 use std::process::ExitCode;
 
 use command::Failure;
-use ending::Memory;
+use exit::Allocator;
 
 #[global_allocator]
-static MEMORY: Memory = Memory;
+static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> ExitCode {
-    ending::prepare();
+    exit::install_handlers();
     match command::run(env::args_os()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(answer)) => {

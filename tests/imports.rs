@@ -54,7 +54,7 @@ fn read(folder: &Path, module: &str, files: &mut BTreeMap<String, String>) {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
         // The program is no part of the library.
-        if module.is_empty() && ["main", "command", "ending", "build"].contains(&name) {
+        if module.is_empty() && ["main", "command", "exit", "build"].contains(&name) {
             continue;
         }
         if path.is_dir() {

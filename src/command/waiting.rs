@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::Duration;
 
-use crate::ending;
+use crate::exit;
 
 /// How long a wait is before it is named.
 const LONG: Duration = Duration::from_secs(2);
@@ -50,7 +50,7 @@ impl Waiting {
                     "waited {what}, and gave up after {} s: try another driver, or `firsthit capture --through none`, which needs no OpenGL",
                     limit.as_secs()
                 ));
-                ending::at_once();
+                exit::now();
             }
         };
         // Where the system has no thread for it, nobody watches.

@@ -3,7 +3,7 @@
 #[path = "../../../../src"]
 mod program {
     pub mod command;
-    pub mod ending;
+    pub mod exit;
 }
 #[path = "../../command_line.rs"]
 mod target;
@@ -13,7 +13,7 @@ use std::iter::once;
 use std::path::Path;
 
 use program::command::Failure;
-use program::{command, ending};
+use program::{command, exit};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| target::run(bytes, &act));
 

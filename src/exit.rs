@@ -1,7 +1,7 @@
-//! How the program ends before its time: for want of memory, through a fault, on a signal. It says
-//! one line at most, leaves no file that is not whole, and comes back to nobody.
+//! How the program exits early: out of memory, on a panic, on a signal. It prints one line at most,
+//! leaves no unfinished file, and returns to no caller.
 
-mod memory;
+mod allocator;
 #[cfg(unix)]
 mod signals;
 
@@ -16,20 +16,20 @@ use std::time::Duration;
 use firsthit::fault;
 use firsthit::image::abandon_unfinished;
 
-pub(crate) use memory::Memory;
+pub(crate) use allocator::Allocator;
 
-/// Sees to signals and faults from now on.
-pub(crate) fn prepare() {
+/// Handles signals and panics from now on.
+pub(crate) fn install_handlers() {
     panic::set_hook(Box::new(fault));
     #[cfg(unix)]
     signals::watch();
 }
 
-/// Ends the program, with status 1.
-pub(crate) fn at_once() -> ! {
+/// Exits with status 1.
+pub(crate) fn now() -> ! {
     abandon_unfinished();
-    // What other threads do, drivers' among them, is not waited for, and no code of theirs is run:
-    // any of it might hang.
+    // Other threads, drivers' among them, are not waited for, and no exit handler runs: any of them
+    // might hang.
     #[cfg(unix)]
     signal_hook::low_level::exit(1);
     #[cfg(not(unix))]
@@ -37,33 +37,33 @@ pub(crate) fn at_once() -> ! {
     std::process::exit(1);
 }
 
-/// Waits for ever where another thread ends the program already, so that no second line is said.
-fn only_once() {
-    static ENDING: AtomicBool = AtomicBool::new(false);
+/// Lets one thread exit, and blocks every other one that tries, so that no second line is printed.
+fn claim() {
+    static CLAIMED: AtomicBool = AtomicBool::new(false);
     thread_local! {
         static HERE: Cell<bool> = const { Cell::new(false) };
     }
-    // A thread that finds no memory for its line says that instead.
+    // The thread that exits may run out of memory while it prints: it says so instead.
     if HERE.replace(true) {
         return;
     }
-    while ENDING.swap(true, Ordering::Relaxed) {
+    while CLAIMED.swap(true, Ordering::Relaxed) {
         thread::sleep(Duration::from_secs(1));
     }
 }
 
-/// What happens on a panic that nobody catches: a line, and the way there if RUST_BACKTRACE asks
+/// The panic hook: a panic that nobody catches is one line, and a backtrace if RUST_BACKTRACE asks
 /// for it.
 fn fault(panic: &PanicHookInfo<'_>) {
     if fault::is_caught() {
         return;
     }
-    only_once();
+    claim();
     let words = fault::words(panic.payload());
     // The standard library panics where a new thread is refused the memory for its signals.
     if words.contains("(os error 12)") {
         crate::command::say(&format!("not enough memory: {words}"));
-        at_once();
+        now();
     }
     let place = panic
         .location()
@@ -76,5 +76,5 @@ fn fault(panic: &PanicHookInfo<'_>) {
     if backtrace.status() == BacktraceStatus::Captured {
         let _ = write!(io::stderr(), "{backtrace}");
     }
-    at_once();
+    now();
 }

@@ -1,20 +1,20 @@
-//! The system's memory, and a line where there is no more of it.
+//! The global allocator: the system's, and one line where that has no more memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::{self, Cursor, Write as _};
 
 use firsthit::memory::is_dispensable;
 
-use super::{at_once, only_once};
+use super::{claim, now};
 
-/// The system's allocator, except that the program ends where memory is refused that it cannot do
-/// without. Otherwise whoever asked would abort or panic, each in its own words, and some only
-/// after asking for more.
-pub(crate) struct Memory;
+/// The system's allocator, except that the program exits where memory is refused that it cannot do
+/// without. Otherwise each caller would abort or panic in its own words, and some only after asking
+/// for more.
+pub(crate) struct Allocator;
 
 // SAFETY: every call is handed on to the system's allocator with what it came with, and what that
 // returns is returned, or nothing is.
-unsafe impl GlobalAlloc for Memory {
+unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller has promised.
         checked(unsafe { System.alloc(layout) }, layout.size())
@@ -36,7 +36,7 @@ unsafe impl GlobalAlloc for Memory {
     }
 }
 
-/// The memory that was asked for, or the end.
+/// The memory that was asked for; else exits.
 fn checked(memory: *mut u8, size: usize) -> *mut u8 {
     if memory.is_null() && !is_dispensable() {
         refused(size);
@@ -46,7 +46,7 @@ fn checked(memory: *mut u8, size: usize) -> *mut u8 {
 
 #[cold]
 fn refused(size: usize) -> ! {
-    only_once();
+    claim();
     // A line for which no memory is needed.
     let mut line = [0; 160];
     let mut end = Cursor::new(&mut line[..]);
@@ -56,5 +56,5 @@ fn refused(size: usize) -> ! {
     );
     let length = end.position() as usize;
     let _ = io::stderr().write_all(&line[..length]);
-    at_once();
+    now();
 }
