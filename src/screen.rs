@@ -72,7 +72,7 @@ pub struct Screen {
     gl: Rc<glow::Context>,
     program: Program,
     origin: Option<glow::UniformLocation>,
-    extent: Option<glow::UniformLocation>,
+    side: Option<glow::UniformLocation>,
     texture: glow::Texture,
     /// Empty: a core context draws nothing without one.
     vertex_array: glow::VertexArray,
@@ -110,7 +110,7 @@ impl Screen {
         let screen = Screen {
             gl,
             origin: program.uniform("origin"),
-            extent: program.uniform("extent"),
+            side: program.uniform("side"),
             program,
             texture,
             vertex_array,
@@ -201,7 +201,7 @@ impl Screen {
     pub fn draw(&self, surface: UVec2, placement: Placement) {
         let gl = &self.gl;
         let origin = placement.origin.as_i64vec2();
-        let corner = (origin + i64::from(placement.extent)).min(surface.as_i64vec2());
+        let corner = (origin + i64::from(placement.side)).min(surface.as_i64vec2());
         let start = origin.max(I64Vec2::ZERO);
         let visible = (corner - start).max(I64Vec2::ZERO).as_ivec2();
         let start = start.as_ivec2();
@@ -224,7 +224,7 @@ impl Screen {
             gl.viewport(start.x, start.y, visible.x, visible.y);
             gl.use_program(Some(self.program.name));
             gl.uniform_2_i32(self.origin.as_ref(), placement.origin.x, placement.origin.y);
-            gl.uniform_1_u32(self.extent.as_ref(), placement.extent);
+            gl.uniform_1_u32(self.side.as_ref(), placement.side);
             gl.active_texture(glow::TEXTURE0);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.bind_vertex_array(Some(self.vertex_array));

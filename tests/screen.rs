@@ -153,10 +153,10 @@ fn assert_drawn(gl: &Gl, screen: &Screen, size: u32, surface: UVec2, placement: 
     gl.bind_framebuffer(glow::RGBA32F, surface);
     screen.draw(surface, placement);
     let texel = |pixel: u32, origin: i32| {
-        let extent = i64::from(placement.extent);
+        let side = i64::from(placement.side);
         let offset = i64::from(pixel) - i64::from(origin);
-        let inside = (0..extent).contains(&offset);
-        inside.then(|| ((2 * offset + 1) * i64::from(size) / (2 * extent)) as f32)
+        let inside = (0..side).contains(&offset);
+        inside.then(|| ((2 * offset + 1) * i64::from(size) / (2 * side)) as f32)
     };
     for (i, drawn) in gl.read_floats(surface).chunks(4).enumerate() {
         let (x, y) = (i as u32 % surface.x, i as u32 / surface.x);
@@ -188,7 +188,7 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
         }
         // Beyond the edges, or not there at all.
         let surface = UVec2::new(40, 30);
-        for (x, y, extent) in [
+        for (x, y, side) in [
             (-13, -7, 100),
             (25, -20, 33),
             (-20, 21, 33),
@@ -199,7 +199,7 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
             (i32::MAX, i32::MAX, 9),
         ] {
             let origin = IVec2::new(x, y);
-            assert_drawn(&gl, &screen, size, surface, Placement { origin, extent });
+            assert_drawn(&gl, &screen, size, surface, Placement { origin, side });
         }
     }
 }
@@ -207,15 +207,15 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
 #[test]
 fn texels_are_exact_where_floats_no_longer_are() {
     let Some(gl) = Gl::open() else { return };
-    let (size, extent) = (255, 8_400_000);
+    let (size, side) = (255, 8_400_000);
     let mut screen = screen(gl.gl.clone(), size).unwrap();
     screen.upload(&coordinates(size)).unwrap();
     // Around the first pixel of each texel: a 32-bit float cannot tell it from its neighbours.
     for texel in 1..size {
-        let first = (extent / size * texel) as i32;
+        let first = (side / size * texel) as i32;
         let surface = UVec2::splat(32);
         let origin = IVec2::splat(8 - first);
-        assert_drawn(&gl, &screen, size, surface, Placement { origin, extent });
+        assert_drawn(&gl, &screen, size, surface, Placement { origin, side });
     }
 }
 

@@ -205,7 +205,7 @@ impl Framebuffer {
         let band = self.size.y as usize * size as usize * 3;
         let mut placement = Placement {
             origin: IVec2::ZERO,
-            extent: size,
+            side: size,
         };
         for samples in image.samples_mut().chunks_mut(band) {
             let rows = samples.len() / (size as usize * 3);

@@ -11,14 +11,14 @@ pub struct Placement {
     /// The bottom left corner.
     pub origin: IVec2,
     /// The length of a side; 0 where there is no room for a single pixel.
-    pub extent: u32,
+    pub side: u32,
 }
 
 impl Placement {
     /// No square at all: nothing is drawn.
     pub const NOWHERE: Placement = Placement {
         origin: IVec2::ZERO,
-        extent: 0,
+        side: 0,
     };
 
     /// The largest square for a picture of `size` × `size` pixels in the middle of `surface`, width
@@ -29,20 +29,20 @@ impl Placement {
     /// side of `surface`. Where the margins cannot be equal, the left and the bottom one are a
     /// pixel narrower.
     pub fn fit(surface: UVec2, size: u32) -> Placement {
-        let side = surface.min_element();
-        let extent = match side.checked_div(size) {
+        let shorter = surface.min_element();
+        let side = match shorter.checked_div(size) {
             Some(multiple @ 1..) => multiple * size,
-            _ => side,
+            _ => shorter,
         };
         Placement {
-            origin: ((surface - extent) / 2).as_ivec2(),
-            extent,
+            origin: ((surface - side) / 2).as_ivec2(),
+            side,
         }
     }
 
     /// The largest side for which a picture of `size` × `size` pixels is drawn exactly: N E must
     /// stay below 2³¹.
-    pub fn max_extent(size: u32) -> u32 {
+    pub fn max_side(size: u32) -> u32 {
         (u32::MAX / 2) / size.max(1)
     }
 
@@ -51,21 +51,21 @@ impl Placement {
     /// picture.
     pub fn pixel_at(&self, window: IVec2, size: u32) -> Option<UVec2> {
         let place = window.as_i64vec2() - self.origin.as_i64vec2();
-        let extent = i64::from(self.extent);
-        if place.min_element() < 0 || place.max_element() >= extent {
+        let side = i64::from(self.side);
+        if place.min_element() < 0 || place.max_element() >= side {
             return None;
         }
-        Some(((2 * place + 1) * i64::from(size) / (2 * extent)).as_uvec2())
+        Some(((2 * place + 1) * i64::from(size) / (2 * side)).as_uvec2())
     }
 
     /// The pixels of the framebuffer that show the picture's pixel at column and row `pixel`: the
     /// bottom left one, and the one past the top right one. Both are the same where the picture
     /// is drawn too small for this pixel to be seen.
     pub fn square_of(&self, pixel: UVec2, size: u32) -> [IVec2; 2] {
-        let (extent, size) = (i64::from(self.extent), i64::from(size.max(1)));
+        let (side, size) = (i64::from(self.side), i64::from(size.max(1)));
         let first = |pixel: I64Vec2| {
             // The first p with 2 p + 1 ≥ 2 E pixel / N.
-            let doubled = 2 * extent * pixel - size;
+            let doubled = 2 * side * pixel - size;
             let first = (doubled + (2 * size - 1)).div_euclid(I64Vec2::splat(2 * size));
             (first + self.origin.as_i64vec2()).as_ivec2()
         };
@@ -73,32 +73,32 @@ impl Placement {
         [first(pixel), first(pixel + 1)]
     }
 
-    /// The picture of `size` × `size` pixels with sides of `extent`, so that what the pixel
+    /// The picture of `size` × `size` pixels with sides of length `side`, so that what the pixel
     /// `window` of the framebuffer shows stays there; the pixel of the picture exactly, where
     /// it is drawn larger than one of the framebuffer before and after.
-    pub fn zoomed(&self, window: IVec2, extent: u32, size: u32) -> Placement {
-        let scale = |extent: u32| f64::from(extent) / f64::from(size);
+    pub fn zoomed(&self, window: IVec2, side: u32, size: u32) -> Placement {
+        let scale = |side: u32| f64::from(side) / f64::from(size);
         // In pixels of the picture, from its corner.
-        let place = ((window - self.origin).as_dvec2() + 0.5) / scale(self.extent);
+        let place = ((window - self.origin).as_dvec2() + 0.5) / scale(self.side);
         // Whole pixels of the picture apart from the rest, so that no rounding leads from one into
         // the next.
         let whole = place.floor();
-        let within: DVec2 = (place - whole) * scale(extent);
-        let shift = (whole * scale(extent)).floor() + within.floor();
+        let within: DVec2 = (place - whole) * scale(side);
+        let shift = (whole * scale(side)).floor() + within.floor();
         Placement {
             origin: window - shift.as_ivec2(),
-            extent,
+            side,
         }
     }
 
     /// The same, moved as little as it takes to have the middle of `surface` within the picture.
     pub fn around_the_middle(&self, surface: UVec2) -> Placement {
         let middle = surface.as_i64vec2() / 2;
-        let last = i64::from(self.extent.saturating_sub(1));
+        let last = i64::from(self.side.saturating_sub(1));
         let origin = self.origin.as_i64vec2().clamp(middle - last, middle);
         Placement {
             origin: origin.as_ivec2(),
-            extent: self.extent,
+            side: self.side,
         }
     }
 }
@@ -109,7 +109,7 @@ mod tests {
 
     fn fit(width: u32, height: u32, size: u32) -> (i32, i32, u32) {
         let placement = Placement::fit(UVec2::new(width, height), size);
-        (placement.origin.x, placement.origin.y, placement.extent)
+        (placement.origin.x, placement.origin.y, placement.side)
     }
 
     #[test]
@@ -155,7 +155,7 @@ mod tests {
     /// Placements of all kinds: smaller than the picture, as large, whole multiples, and others;
     /// inside the window and reaching out.
     fn placements(size: u32) -> impl Iterator<Item = Placement> {
-        let extents = [
+        let sides = [
             1,
             3,
             size - 1,
@@ -166,9 +166,9 @@ mod tests {
             5 * size,
         ];
         let origins = [IVec2::ZERO, IVec2::new(7, -3), IVec2::new(-40, 11)];
-        extents
+        sides
             .into_iter()
-            .flat_map(move |extent| origins.map(|origin| Placement { origin, extent }))
+            .flat_map(move |side| origins.map(|origin| Placement { origin, side }))
     }
 
     #[test]
@@ -176,12 +176,12 @@ mod tests {
         let both = [12, 13].map(|size| placements(size).map(move |placement| (size, placement)));
         for (size, placement) in both.into_iter().flatten() {
             let mut shown = vec![0_i64; (size * size) as usize];
-            let extent = placement.extent as i32;
-            for y in -50..extent + 50 {
-                for x in -50..extent + 50 {
+            let side = placement.side as i32;
+            for y in -50..side + 50 {
+                for x in -50..side + 50 {
                     let window = IVec2::new(x, y);
                     let inside = window.cmpge(placement.origin).all()
-                        && window.cmplt(placement.origin + extent).all();
+                        && window.cmplt(placement.origin + side).all();
                     let pixel = placement.pixel_at(window, size);
                     assert_eq!(pixel.is_some(), inside, "{placement:?} {window}");
                     if let Some(pixel) = pixel {
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn zooming_keeps_the_pixel_under_the_pointer() {
         let size = 13;
-        for placement in placements(size).filter(|placement| placement.extent >= size) {
+        for placement in placements(size).filter(|placement| placement.side >= size) {
             for multiple in 1..70 {
                 for window in [IVec2::new(0, 8), IVec2::new(7, 9), IVec2::new(12, 12)] {
                     let zoomed = placement.zoomed(window, multiple * size, size);
@@ -218,9 +218,9 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_extent_is_still_drawn_exactly() {
+    fn the_largest_side_is_still_drawn_exactly() {
         for size in [1, 500, 16384] {
-            let product = u64::from(Placement::max_extent(size)) * u64::from(size);
+            let product = u64::from(Placement::max_side(size)) * u64::from(size);
             assert!(product < 1 << 31 && product + u64::from(size) >= (1 << 31) - 1);
         }
     }

@@ -202,7 +202,7 @@ impl TimedScreen {
                 UVec2::splat(self.size),
                 Placement {
                     origin: IVec2::ZERO,
-                    extent: self.size,
+                    side: self.size,
                 },
             ),
             Renderer::DrawPixels(functions) => functions.draw(&self.gl, image),

@@ -35,10 +35,10 @@ impl Layout {
             (surface.x, surface.y, wanted.x)
         };
         let least = wanted.min((long - short).max(long / 2));
-        let extent = Placement::fit(UVec2::new(long - least, short), size).extent;
+        let side = Placement::fit(UVec2::new(long - least, short), size).side;
         // Lines as long as wanted are long enough; there can always be more of them.
         let most = if tall { u32::MAX } else { wanted };
-        let length = (long - extent).min(most.min(wanted.max(long - short)));
+        let length = (long - side).min(most.min(wanted.max(long - short)));
         if tall {
             picture.max.y -= length as i32;
             panel.min.y = picture.max.y;
@@ -53,13 +53,13 @@ impl Layout {
     }
 }
 
-/// The size of a window that has room for a panel beside a picture of `extent` pixels a side, if it
-/// is to be larger than now.
-pub(super) fn with_panel(surface: UVec2, extent: u32, wanted: UVec2) -> UVec2 {
+/// The size of a window that has room for a panel beside a picture of `side` × `side` pixels: at
+/// least as large as now.
+pub(super) fn with_panel(surface: UVec2, side: u32, wanted: UVec2) -> UVec2 {
     let enough = if is_tall(surface) {
         UVec2::new(surface.x, surface.x + wanted.y)
     } else {
-        UVec2::new(extent + wanted.x, wanted.y)
+        UVec2::new(side + wanted.x, wanted.y)
     };
     surface.max(enough)
 }
@@ -103,11 +103,11 @@ mod tests {
             (120, UVec2::new(360, 1000)),
             (500, UVec2::new(500, 510)),
         ] {
-            let extent = Placement::fit(surface, size).extent;
-            let grown = with_panel(surface, extent, WANTED);
+            let side = Placement::fit(surface, size).side;
+            let grown = with_panel(surface, side, WANTED);
             let layout = Layout::new(grown, size, Some(WANTED));
-            let after = Placement::fit(layout.picture.size(), size).extent;
-            assert!(after >= extent, "{surface}: {extent} becomes {after}");
+            let after = Placement::fit(layout.picture.size(), size).side;
+            assert!(after >= side, "{surface}: {side} becomes {after}");
             let panel = layout.panel.map(|panel| panel.size());
             let full = panel.is_some_and(|panel| panel.cmpge(WANTED).all() || surface.x < WANTED.x);
             assert!(full, "{surface}: {panel:?}");

@@ -194,14 +194,14 @@ impl View {
         if self.panel == open {
             return;
         }
-        let extent = self.zoom_to_fit().extent;
+        let side = self.zoom_to_fit().side;
         self.change(|view| view.panel = open);
         if self.is_empty() {
             return;
         }
         let (window, surface) = (&self.window, self.surface);
         let size = if open {
-            let wanted = with_panel(surface, extent, panel::wanted(self.cell()));
+            let wanted = with_panel(surface, side, panel::wanted(self.cell()));
             self.growth.grow(window, surface, wanted)
         } else {
             self.growth.shrink(window, surface)

@@ -29,21 +29,21 @@ impl Zoom {
     /// stays there, as long as the middle of the window shows the picture.
     pub(super) fn by(&mut self, steps: i32, pointer: IVec2, surface: UVec2, size: u32) {
         let least = Placement::fit(surface, size);
-        if least.extent == 0 {
+        if least.side == 0 {
             return;
         }
         let mut placement = self.placement(surface, size);
         for _ in 0..steps.unsigned_abs().min(MAX_MULTIPLE) {
-            let extent = if steps > 0 {
-                larger(placement.extent, size).max(least.extent)
+            let side = if steps > 0 {
+                larger(placement.side, size).max(least.side)
             } else {
-                smaller(placement.extent, size)
+                smaller(placement.side, size)
             };
-            if extent <= least.extent && steps < 0 {
+            if side <= least.side && steps < 0 {
                 self.fit();
                 return;
             }
-            placement = placement.zoomed(pointer, extent, size);
+            placement = placement.zoomed(pointer, side, size);
         }
         self.chosen = Some(placement.around_the_middle(surface));
     }
@@ -65,26 +65,26 @@ impl Zoom {
 }
 
 /// The next larger side: in whole multiples of `size` once there is one.
-fn larger(extent: u32, size: u32) -> u32 {
-    if extent < size {
-        return extent.saturating_add(extent.div_ceil(4)).min(size);
+fn larger(side: u32, size: u32) -> u32 {
+    if side < size {
+        return side.saturating_add(side.div_ceil(4)).min(size);
     }
-    let multiple = extent / size;
+    let multiple = side / size;
     let next = (multiple + (multiple / 4).max(1)).min(MAX_MULTIPLE.max(multiple));
     let next = next.saturating_mul(size);
-    if next <= Placement::max_extent(size) {
+    if next <= Placement::max_side(size) {
         next
     } else {
-        extent
+        side
     }
 }
 
 /// The next smaller side.
-fn smaller(extent: u32, size: u32) -> u32 {
-    if extent <= size {
-        return extent - extent.div_ceil(5);
+fn smaller(side: u32, size: u32) -> u32 {
+    if side <= size {
+        return side - side.div_ceil(5);
     }
-    let multiple = extent / size;
+    let multiple = side / size;
     (multiple - (multiple / 5).max(1)) * size
 }
 
@@ -103,14 +103,14 @@ mod tests {
             for _ in 0..30 {
                 // A pixel of the window may show several of a picture that is larger; from 1:1 on
                 // it shows one.
-                let single = zoom.placement(SURFACE, size).extent >= size;
+                let single = zoom.placement(SURFACE, size).side >= size;
                 let before = pixel(&zoom);
                 zoom.by(1, pointer, SURFACE, size);
                 if single {
                     assert_eq!(pixel(&zoom), before);
                 }
             }
-            assert_eq!(zoom.placement(SURFACE, size).extent, MAX_MULTIPLE * size);
+            assert_eq!(zoom.placement(SURFACE, size).side, MAX_MULTIPLE * size);
             zoom.by(-100, pointer, SURFACE, size);
             assert_eq!(zoom.chosen, None, "all the way out is the whole picture");
         }
@@ -121,13 +121,13 @@ mod tests {
         let mut zoom = Zoom::default();
         for _ in 0..40 {
             zoom.by(1, IVec2::ZERO, SURFACE, 700);
-            let extent = zoom.placement(SURFACE, 700).extent;
-            assert!(extent < 700 || extent % 700 == 0, "{extent}");
+            let side = zoom.placement(SURFACE, 700).side;
+            assert!(side < 700 || side % 700 == 0, "{side}");
         }
         let mut zoom = Zoom::default();
         zoom.by(40, IVec2::ZERO, SURFACE, 16384);
-        let extent = zoom.placement(SURFACE, 16384).extent;
-        assert!(extent > 16384 && extent <= Placement::max_extent(16384));
+        let side = zoom.placement(SURFACE, 16384).side;
+        assert!(side > 16384 && side <= Placement::max_side(16384));
     }
 
     #[test]
