@@ -7,7 +7,7 @@ mod explain;
 mod report;
 mod round_trip;
 mod view;
-mod waiting;
+mod watchdog;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

@@ -14,7 +14,7 @@ use firsthit::image::MAX_SIZE;
 use firsthit::{Kernel, Scene, Stage};
 
 use super::Failure;
-use super::waiting::Waiting;
+use super::watchdog::Watchdog;
 
 /// What is pictured, and how.
 #[derive(Args)]
@@ -51,7 +51,7 @@ impl PictureArguments {
 /// The scene in the file `path`.
 pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let path = path.to_owned();
-    let _waiting = Waiting::for_input(&path);
+    let _watchdog = Watchdog::for_input(&path);
     match read(&path) {
         Ok(text) => Scene::from_toml(&text).map_err(|reason| Failure::Scene { path, reason }),
         Err(reason) => Err(Failure::Unreadable { path, reason }),

@@ -8,7 +8,7 @@ use firsthit::Image;
 use firsthit::difference::{Difference, save_heat};
 use firsthit::image::{Format, LoadError};
 
-use super::waiting::Waiting;
+use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
@@ -102,6 +102,6 @@ fn text(arguments: &Arguments, size: u32, difference: &Difference) -> String {
 }
 
 fn load(path: &Path) -> Result<Image, LoadError> {
-    let _waiting = Waiting::for_input(path);
+    let _watchdog = Watchdog::for_input(path);
     Image::load(path)
 }

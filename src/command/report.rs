@@ -11,7 +11,7 @@ use firsthit::{Kernel, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{frames, kernel, read_scene, stage};
-use super::waiting::Waiting;
+use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
@@ -86,9 +86,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => Ok(()),
     };
     let saved = save(&report);
-    let mut waiting = None;
+    let mut watchdog = None;
     report.measure_pipelines(&request, &mut |waits| {
-        waiting = waits.then(|| Waiting::for_driver(request.size));
+        watchdog = waits.then(|| Watchdog::for_driver(request.size));
     })?;
     shown?;
     let all_shown = print(&report.pipeline_table());

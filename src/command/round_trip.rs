@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use firsthit::Image;
 use firsthit::screen::{Backend, Offscreen, ScreenError};
 
-use super::waiting::Waiting;
+use super::watchdog::Watchdog;
 
 /// The values of `--through`.
 #[derive(Clone, Copy, ValueEnum)]
@@ -50,7 +50,7 @@ impl RoundTrip {
     }
 
     fn open_backend(&mut self, backend: Backend) -> Result<(), ScreenError> {
-        let _waiting = Waiting::for_driver(self.size);
+        let _watchdog = Watchdog::for_driver(self.size);
         self.screen = Some((backend, Offscreen::open(backend, self.size)?));
         Ok(())
     }
@@ -76,9 +76,9 @@ impl RoundTrip {
     /// error; where the backend was not asked for, the next one is tried then.
     pub(crate) fn send(&mut self, image: &Image) -> Result<(), ScreenError> {
         while let Some((backend, screen)) = &mut self.screen {
-            let waiting = Waiting::for_driver(self.size);
+            let watchdog = Watchdog::for_driver(self.size);
             let sent = screen.show(image).and_then(|back| compare(image, &back));
-            drop(waiting);
+            drop(watchdog);
             match sent {
                 Ok(()) => break,
                 Err(error) if self.reasons.is_none() => return Err(error),

@@ -6,7 +6,7 @@ use firsthit::Stage;
 use firsthit::viewer::{self, Event, Options, Pace};
 
 use super::arguments::{PictureArguments, finite, stage};
-use super::waiting::Waiting;
+use super::watchdog::Watchdog;
 use super::{Failure, print};
 
 #[derive(Args)]
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         pace,
         exit_after_frames: arguments.exit_after_frames,
     };
-    let mut opening = Some(Waiting::for_driver(options.size));
+    let mut opening = Some(Watchdog::for_driver(options.size));
     viewer::run(options, &mut |event| match event {
         Event::Opened => opening = None,
         Event::NotSaved(_) | Event::Differs { .. } => super::say(&event.to_string()),

@@ -1,5 +1,5 @@
-//! What is waited for that is not ours: it is named when it takes long, and a driver is not waited
-//! for without end.
+//! A watchdog over calls that may hang: it names what takes long, and gives up a driver that never
+//! returns.
 
 use std::fs;
 use std::path::Path;
@@ -9,35 +9,35 @@ use std::time::Duration;
 
 use crate::exit;
 
-/// How long a wait is before it is named.
+/// How long a call takes before the watchdog names it.
 const LONG: Duration = Duration::from_secs(2);
 
-/// A wait; it ends when this is dropped.
-pub(crate) struct Waiting {
+/// A thread that watches a call until this is dropped.
+pub(crate) struct Watchdog {
     _ended: Option<Sender<()>>,
 }
 
-impl Waiting {
-    /// For what `path` is to hold, if it is a pipe or a device: it is waited for until it comes, or
-    /// the program is interrupted. A file is not waited for.
-    pub(crate) fn for_input(path: &Path) -> Option<Waiting> {
+impl Watchdog {
+    /// Watches the reading of `path` if that is a pipe or a device, for any time: its writer
+    /// decides. A file needs no watchdog.
+    pub(crate) fn for_input(path: &Path) -> Option<Watchdog> {
         let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
         let what = || format!("for {} to be written", path.display());
-        (!is_file).then(|| Waiting::begin(what(), None))
+        (!is_file).then(|| Watchdog::begin(what(), None))
     }
 
-    /// For an OpenGL driver that is to do something with pictures of `size` × `size` pixels.
-    pub(crate) fn for_driver(size: u32) -> Waiting {
+    /// Watches a call of an OpenGL driver with pictures of `size` × `size` pixels.
+    pub(crate) fn for_driver(size: u32) -> Watchdog {
         // A processor of today draws ten pixels in a microsecond.
         let work = Duration::from_micros(u64::from(size) * u64::from(size));
-        Waiting::begin(
+        Watchdog::begin(
             "for the OpenGL driver".to_owned(),
             Some(Duration::from_secs(20) + work),
         )
     }
 
-    /// Says that it waits `what`, and ends the program after the time of `limit`.
-    fn begin(what: String, limit: Option<Duration>) -> Waiting {
+    /// Says after a while that the program waits `what`, and exits after `limit`.
+    fn begin(what: String, limit: Option<Duration>) -> Watchdog {
         let (ended, end) = mpsc::channel::<()>();
         let watch = move || {
             if end.recv_timeout(LONG) != Err(RecvTimeoutError::Timeout) {
@@ -53,9 +53,9 @@ impl Waiting {
                 exit::now();
             }
         };
-        // Where the system has no thread for it, nobody watches.
+        // Where the system has no thread left, there is no watchdog.
         let watching = thread::Builder::new().stack_size(1 << 16).spawn(watch);
-        Waiting {
+        Watchdog {
             _ended: watching.is_ok().then_some(ended),
         }
     }
