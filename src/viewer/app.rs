@@ -169,7 +169,7 @@ impl App<'_> {
                 self.content.give_back(self.wanted());
             }
         }
-        self.tracing.wish(self.wanted());
+        self.tracing.request(self.wanted());
     }
 
     /// Brings what is to be shown into the texture, unless it is there already or cannot be had.
@@ -348,7 +348,7 @@ impl App<'_> {
                     if self.kernel == frame.kernel {
                         self.next_kernel();
                         self.retitle();
-                        self.tracing.wish(self.wanted());
+                        self.tracing.request(self.wanted());
                     }
                     self.touch();
                 }
@@ -385,7 +385,7 @@ impl App<'_> {
     /// Asks for the errors of the picture that is shown, if they are to be seen.
     fn compare(&mut self) {
         if let Some(frame) = self.content.frame_to_compare() {
-            self.comparing.wish(frame);
+            self.comparing.request(frame);
         }
     }
 

@@ -106,7 +106,7 @@ impl Errors {
 /// The thread that compares.
 pub(super) struct Comparing {
     worker: Worker<Frame, Reply>,
-    wished: Option<Frame>,
+    requested: Option<Frame>,
 }
 
 impl Comparing {
@@ -133,21 +133,21 @@ impl Comparing {
         .map_err(ViewerError::Thread)?;
         Ok(Comparing {
             worker,
-            wished: None,
+            requested: None,
         })
     }
 
-    /// Wishes for the errors of `frame`, unless that was the last wish.
-    pub(super) fn wish(&mut self, frame: Frame) {
-        if self.wished != Some(frame) {
-            self.wished = Some(frame);
-            self.worker.wish(frame);
+    /// Requests the errors of `frame`, unless they were requested last.
+    pub(super) fn request(&mut self, frame: Frame) {
+        if self.requested != Some(frame) {
+            self.requested = Some(frame);
+            self.worker.request(frame);
         }
     }
 
-    /// Forgets the last wish, so that the same may be wished for again.
+    /// Forgets the last request, so that the same frame may be requested again.
     pub(super) fn forget(&mut self) {
-        self.wished = None;
+        self.requested = None;
     }
 
     pub(super) fn reply(&self) -> Option<Reply> {

@@ -45,7 +45,7 @@ enum Task {
 
 /// What it answers.
 pub(super) enum Reply {
-    /// A picture that was wished for.
+    /// A picture that was requested.
     Traced(Traced, Arc<Image>),
     /// What became of a picture that was to be saved.
     Saved(Result<PathBuf, SaveError>),
@@ -150,8 +150,8 @@ impl FrameTracer {
 /// The thread that traces.
 pub(super) struct Tracing {
     worker: Worker<Task, (u64, Reply)>,
-    /// The frame that was wished for last.
-    wished: Option<Frame>,
+    /// The frame that was requested last.
+    requested: Option<Frame>,
     /// Pictures traced so far.
     pub(super) traces: u64,
 }
@@ -189,32 +189,32 @@ impl Tracing {
         .map_err(ViewerError::Thread)?;
         Ok(Tracing {
             worker,
-            wished: None,
+            requested: None,
             traces: 0,
         })
     }
 
-    /// Wishes for the picture of `frame`, unless that was the last wish.
-    pub(super) fn wish(&mut self, frame: Frame) {
-        if self.wished != Some(frame) {
-            self.wished = Some(frame);
-            self.worker.wish(Task::Trace(frame));
+    /// Requests the picture of `frame`, unless it was requested last.
+    pub(super) fn request(&mut self, frame: Frame) {
+        if self.requested != Some(frame) {
+            self.requested = Some(frame);
+            self.worker.request(Task::Trace(frame));
         }
     }
 
-    /// Whether a picture was wished for that is not `shown`.
+    /// Whether a picture was requested that is not `shown`.
     pub(super) fn is_behind(&self, shown: Option<Frame>) -> bool {
-        self.wished != shown
+        self.requested != shown
     }
 
     /// Has the picture of `frame` saved.
     pub(super) fn save(&self, frame: Frame, format: Format) {
-        self.worker.send(Task::Save(frame, format));
+        self.worker.enqueue(Task::Save(frame, format));
     }
 
     /// Has a pixel of `frame`, column and row, worked through.
     pub(super) fn explain(&self, frame: Frame, pixel: UVec2) {
-        self.worker.send(Task::Explain(frame, pixel));
+        self.worker.enqueue(Task::Explain(frame, pixel));
     }
 
     pub(super) fn reply(&mut self) -> Option<Reply> {

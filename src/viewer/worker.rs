@@ -19,12 +19,12 @@ struct Inbox<Task> {
 }
 
 struct Tasks<Task> {
-    /// What has to be done, in this order.
-    errands: VecDeque<Task>,
-    /// Errands that are not done yet, the one that is being worked on included.
+    /// Tasks that all have to be done, in this order.
+    queue: VecDeque<Task>,
+    /// Queued tasks that are not done yet, the one that is being worked on included.
     unfinished: usize,
-    /// What is to be shown next: only what was wished for last.
-    wish: Option<Task>,
+    /// The latest request, if it has not begun.
+    request: Option<Task>,
     closed: bool,
 }
 
@@ -34,18 +34,18 @@ impl<Task> Inbox<Task> {
         self.tasks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next task, waited for, and whether it is an errand; `None` once there will be no more.
+    /// The next task, waited for, and whether it was queued; `None` once there will be no more.
     fn next(&self) -> Option<(Task, bool)> {
         let mut tasks = self.lock();
         loop {
-            if let Some(errand) = tasks.errands.pop_front() {
-                return Some((errand, true));
+            if let Some(task) = tasks.queue.pop_front() {
+                return Some((task, true));
             }
             if tasks.closed {
                 return None;
             }
-            if let Some(wish) = tasks.wish.take() {
-                return Some((wish, false));
+            if let Some(task) = tasks.request.take() {
+                return Some((task, false));
             }
             tasks = self
                 .changed
@@ -68,9 +68,9 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
     ) -> io::Result<Worker<Task, Reply>> {
         let inbox = Arc::new(Inbox {
             tasks: Mutex::new(Tasks {
-                errands: VecDeque::new(),
+                queue: VecDeque::new(),
                 unfinished: 0,
-                wish: None,
+                request: None,
                 closed: false,
             }),
             changed: Condvar::new(),
@@ -80,13 +80,13 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
         let thread = thread::Builder::new()
             .name(name.to_owned())
             .spawn(move || {
-                while let Some((task, errand)) = theirs.next() {
+                while let Some((task, is_queued)) = theirs.next() {
                     work(task, &mut |reply| {
                         // Nobody listens once the window is closed.
                         let _ = sender.send(reply);
                         wake();
                     });
-                    theirs.lock().unfinished -= usize::from(errand);
+                    theirs.lock().unfinished -= usize::from(is_queued);
                 }
             })?;
         Ok(Worker {
@@ -96,17 +96,17 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
         })
     }
 
-    /// Wishes for `task`; a wish that is not begun yet is forgotten.
-    pub(super) fn wish(&self, task: Task) {
-        self.inbox.lock().wish = Some(task);
+    /// Requests `task`, instead of the last request if that has not begun.
+    pub(super) fn request(&self, task: Task) {
+        self.inbox.lock().request = Some(task);
         self.inbox.changed.notify_one();
     }
 
-    /// Sends the worker on an errand: it is done before any wish, after the errands before it, and
-    /// also when the window closes.
-    pub(super) fn send(&self, errand: Task) {
+    /// Queues `task`: it is done before any request, after the tasks queued before it, and also
+    /// when the window closes.
+    pub(super) fn enqueue(&self, task: Task) {
         let mut tasks = self.inbox.lock();
-        tasks.errands.push_back(errand);
+        tasks.queue.push_back(task);
         tasks.unfinished += 1;
         self.inbox.changed.notify_one();
     }
@@ -116,7 +116,7 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
         self.replies.try_recv().ok()
     }
 
-    /// Waits for the errands, but for no wish, and gives the last answers.
+    /// Waits for the queued tasks, but for no request, and gives the last answers.
     pub(super) fn finish(self) -> Vec<Reply> {
         let unfinished = {
             let mut tasks = self.inbox.lock();
@@ -155,17 +155,17 @@ mod tests {
     }
 
     #[test]
-    fn of_wishes_only_the_last_is_done_and_errands_come_first() {
+    fn of_requests_only_the_last_is_done_and_queued_tasks_come_first() {
         let (worker, go, wakes) = slow();
-        worker.wish(1);
+        worker.request(1);
         // Until the first one is begun.
-        while worker.inbox.lock().wish.is_some() {
+        while worker.inbox.lock().request.is_some() {
             thread::yield_now();
         }
-        worker.wish(2);
-        worker.wish(3);
-        worker.send(10);
-        worker.send(11);
+        worker.request(2);
+        worker.request(3);
+        worker.enqueue(10);
+        worker.enqueue(11);
         assert_eq!(worker.reply(), None);
         for expected in [1, 10, 11, 3] {
             go.send(()).unwrap();
@@ -175,18 +175,18 @@ mod tests {
     }
 
     #[test]
-    fn closing_waits_for_errands_and_for_no_wish() {
+    fn closing_waits_for_queued_tasks_and_for_no_request() {
         let (worker, go, _) = slow();
-        worker.send(10);
-        worker.send(11);
-        worker.wish(1);
+        worker.enqueue(10);
+        worker.enqueue(11);
+        worker.request(1);
         for _ in 0..3 {
             go.send(()).unwrap();
         }
         assert_eq!(worker.finish(), [10, 11]);
 
         let (worker, _go, _) = slow();
-        worker.wish(1);
+        worker.request(1);
         assert!(worker.finish().is_empty(), "it would never end");
     }
 }

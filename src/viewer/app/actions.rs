@@ -76,7 +76,7 @@ impl App<'_> {
         if self.playing() {
             self.ask_for_redraw();
         } else {
-            self.tracing.wish(self.wanted());
+            self.tracing.request(self.wanted());
         }
     }
 
