@@ -23,7 +23,7 @@ use super::pointer::Pointer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
 use super::tracing::{Frame, FrameTracer, Reply, Tracing};
-use super::window::View;
+use super::window::GlWindow;
 use super::{Counts, Event, Options, ViewerError};
 
 /// How long a window that asks to be drawn waits for the picture that is on its way, before it gets
@@ -62,7 +62,7 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
         tracing,
         comparing,
         content: Content::default(),
-        view: None,
+        gl_window: None,
         clipboard: None,
         overdue: false,
         next_frame: started,
@@ -97,7 +97,7 @@ struct App<'a> {
     comparing: Comparing,
     content: Content,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
-    view: Option<View>,
+    gl_window: Option<GlWindow>,
     /// As long as there is a window.
     clipboard: Option<Clipboard>,
     /// The window is drawn again without waiting for the picture that is on its way: it took too
@@ -175,10 +175,12 @@ impl App<'_> {
     /// Brings what is to be shown into the texture, unless it is there already or cannot be had.
     /// Returns whether it was brought.
     fn upload(&mut self) -> Result<bool, ViewerError> {
-        let (Some(view), Some((image, rows))) = (&mut self.view, self.content.to_upload()) else {
+        let (Some(gl_window), Some((image, rows))) =
+            (&mut self.gl_window, self.content.to_upload())
+        else {
             return Ok(false);
         };
-        self.times.upload = view.upload(image, rows, self.hud.information)?;
+        self.times.upload = gl_window.upload(image, rows, self.hud.information)?;
         self.counts.uploads += 1;
         self.content.uploaded();
         Ok(true)
@@ -186,10 +188,10 @@ impl App<'_> {
 
     /// Looks whether the driver shows what is uploaded, where it was not looked at in this size.
     fn examine(&mut self) {
-        if let (Some(view), Some(image)) = (&mut self.view, self.content.in_texture())
-            && let Some(differs) = view.examine(image)
+        if let (Some(gl_window), Some(image)) = (&mut self.gl_window, self.content.in_texture())
+            && let Some(differs) = gl_window.examine(image)
         {
-            let renderer = view.renderer().to_owned();
+            let renderer = gl_window.renderer().to_owned();
             (self.report)(Event::Differs { renderer, differs });
         }
     }
@@ -222,7 +224,11 @@ impl App<'_> {
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return Ok(());
         }
-        if let Some(until) = self.view.as_mut().and_then(|view| view.awaits_size(start)) {
+        if let Some(until) = self
+            .gl_window
+            .as_mut()
+            .and_then(|gl_window| gl_window.awaits_size(start))
+        {
             // Drawn in the new size at once, instead of in the old one first.
             self.overdue |= overdue;
             event_loop.set_control_flow(ControlFlow::WaitUntil(until));
@@ -231,16 +237,16 @@ impl App<'_> {
         let change = self.hud.expire(start);
         let values = self.hud_values();
         let marks = self.marks(&values);
-        let Some(view) = &mut self.view else {
+        let Some(gl_window) = &mut self.gl_window else {
             return Ok(());
         };
         if redisplay == Redisplay::Clear {
-            return view.clear();
+            return gl_window.clear();
         }
         let waits = self.hud.information;
-        let window = (view.surface(), view.layout());
-        let boards = self.hud.boards(window, view.cell(), &values);
-        let Some(draw) = view.draw((&marks, boards), waits)? else {
+        let window = (gl_window.surface(), gl_window.layout());
+        let boards = self.hud.boards(window, gl_window.cell(), &values);
+        let Some(draw) = gl_window.draw((&marks, boards), waits)? else {
             self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());
@@ -251,7 +257,7 @@ impl App<'_> {
         if self.counts.draws == 1 {
             (self.report)(Event::FirstFrame {
                 after: self.started.elapsed(),
-                renderer: view.renderer().to_owned(),
+                renderer: gl_window.renderer().to_owned(),
             });
         }
         if self.playing() && self.frame_rate.count(start) {
@@ -275,21 +281,21 @@ impl App<'_> {
 
     /// Whether there is anything to draw on that is seen.
     fn visible(&mut self) -> bool {
-        let Some(view) = &self.view else {
+        let Some(gl_window) = &self.gl_window else {
             return false;
         };
         if self.minimized {
-            self.minimized = view.is_minimized();
+            self.minimized = gl_window.is_minimized();
         }
-        !(self.occluded || self.minimized || view.is_empty())
+        !(self.occluded || self.minimized || gl_window.is_empty())
     }
 
     /// What is only looked at now and then while the animation plays: each time it asks the
     /// display.
     fn look_around(&mut self) {
-        if let Some(view) = &self.view {
-            self.minimized = view.is_minimized();
-            self.frame_time = view.frame_time();
+        if let Some(gl_window) = &self.gl_window {
+            self.minimized = gl_window.is_minimized();
+            self.frame_time = gl_window.frame_time();
         }
         self.retitle();
     }
@@ -311,8 +317,8 @@ impl App<'_> {
     fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
         if Instant::now() < self.next_frame {
             event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
-        } else if let Some(view) = &self.view {
-            view.window().request_redraw();
+        } else if let Some(gl_window) = &self.gl_window {
+            gl_window.window().request_redraw();
         }
     }
 
@@ -375,8 +381,8 @@ impl App<'_> {
     /// Something but the picture looks different now.
     fn touch(&mut self) {
         let open = self.hud.has_panel() || self.content.shows_errors();
-        if let Some(view) = &mut self.view {
-            view.show_panel(open);
+        if let Some(gl_window) = &mut self.gl_window {
+            gl_window.show_panel(open);
         }
         self.overdue = true;
         self.ask_for_redraw();
@@ -390,14 +396,14 @@ impl App<'_> {
     }
 
     fn ask_for_redraw(&self) {
-        if let Some(view) = &self.view {
-            view.window().request_redraw();
+        if let Some(gl_window) = &self.gl_window {
+            gl_window.window().request_redraw();
         }
     }
 
     /// Writes stage, kernel, α and frames a second into the title, where they changed.
     fn retitle(&mut self) {
-        let Some(view) = &self.view else {
+        let Some(gl_window) = &self.gl_window else {
             return;
         };
         let tail = match (self.stage, self.frame_rate.per_second()) {
@@ -412,17 +418,17 @@ impl App<'_> {
             self.playback.alpha(),
         );
         if title != self.title {
-            view.window().set_title(&title);
+            gl_window.window().set_title(&title);
             self.title = title;
         }
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
-        let view = View::open(event_loop, self.size)?;
-        view.window().request_redraw();
-        self.frame_time = view.frame_time();
-        self.clipboard = Some(Clipboard::beside(view.window()));
-        self.view = Some(view);
+        let gl_window = GlWindow::open(event_loop, self.size)?;
+        gl_window.window().request_redraw();
+        self.frame_time = gl_window.frame_time();
+        self.clipboard = Some(Clipboard::beside(gl_window.window()));
+        self.gl_window = Some(gl_window);
         (self.report)(Event::Opened);
         self.content.lose_texture();
         self.retitle();

@@ -1,4 +1,4 @@
-//! The window, its OpenGL context, and the screen in it.
+//! The window, its OpenGL context, and what is drawn in it.
 
 mod growth;
 mod opengl;
@@ -41,10 +41,10 @@ const LOOKS: u32 = 4;
 /// So many frames are presented in a size before it is looked at one.
 const SETTLING: u64 = 2;
 
-/// The window and everything that draws in it.
-pub(super) struct View {
-    /// `None` only while it is being replaced.
-    drawing: Option<Drawing>,
+/// A window with an OpenGL context.
+pub(super) struct GlWindow {
+    /// `None` only while they are being replaced.
+    resources: Option<GlResources>,
     config: Config,
     window: Window,
     /// The width and height of the surface in pixels; 0 where the window shows none.
@@ -63,8 +63,8 @@ pub(super) struct View {
     looked_at: u64,
 }
 
-/// What is lost when the context is. Freed in this order: the screen needs the context.
-struct Drawing {
+/// The context and its objects, lost together. Dropped in this order: the screen needs the context.
+struct GlResources {
     /// Made when there is something to write.
     overlay: Option<Overlay>,
     gl: Rc<glow::Context>,
@@ -74,10 +74,13 @@ struct Drawing {
     context: PossiblyCurrentContext,
 }
 
-impl View {
+impl GlWindow {
     /// Opens a window for pictures of `picture` × `picture` pixels: so many logical pixels a side
     /// where they fit the monitor, else the largest square that does.
-    pub(super) fn open(event_loop: &ActiveEventLoop, picture: u32) -> Result<View, ViewerError> {
+    pub(super) fn open(
+        event_loop: &ActiveEventLoop,
+        picture: u32,
+    ) -> Result<GlWindow, ViewerError> {
         let monitor = event_loop
             .primary_monitor()
             .or_else(|| event_loop.available_monitors().next())
@@ -90,8 +93,8 @@ impl View {
             .with_inner_size(LogicalSize::new(side, side));
         let mut reasons = Vec::new();
         for prefer_egl in [false, true] {
-            match View::open_with(event_loop, &attributes, picture, prefer_egl) {
-                Ok(view) => return Ok(view),
+            match GlWindow::open_with(event_loop, &attributes, picture, prefer_egl) {
+                Ok(gl_window) => return Ok(gl_window),
                 Err(Failure::OpenGl(reason)) if !reasons.contains(&reason) => reasons.push(reason),
                 Err(Failure::OpenGl(_)) => {}
                 Err(Failure::Viewer(error)) => return Err(error),
@@ -105,7 +108,7 @@ impl View {
         attributes: &WindowAttributes,
         picture: u32,
         prefer_egl: bool,
-    ) -> Result<View, Failure> {
+    ) -> Result<GlWindow, Failure> {
         let create = |config: Option<&Config>| match config {
             Some(config) => event_loop.create_window(fitting(attributes.clone(), config)),
             None => event_loop.create_window(attributes.clone()),
@@ -124,8 +127,8 @@ impl View {
             None => create(Some(&config))?,
         };
         let size = window.inner_size();
-        let mut view = View {
-            drawing: None,
+        let mut gl_window = GlWindow {
+            resources: None,
             config,
             window,
             surface: UVec2::new(size.width, size.height),
@@ -137,16 +140,16 @@ impl View {
             presented: 0,
             looked_at: SETTLING,
         };
-        view.renew()?;
-        Ok(view)
+        gl_window.renew()?;
+        Ok(gl_window)
     }
 
     /// Makes surface, context and screen, anew where they were lost. The screen's texture is empty
     /// after it.
     fn renew(&mut self) -> Result<(), Failure> {
-        self.drawing = None;
+        self.resources = None;
         self.look_again();
-        self.drawing = Some(Drawing::new(
+        self.resources = Some(GlResources::new(
             &self.config,
             &self.window,
             self.surface,
@@ -161,9 +164,9 @@ impl View {
 
     /// The name of the OpenGL renderer.
     pub(super) fn renderer(&self) -> &str {
-        self.drawing
+        self.resources
             .as_ref()
-            .map_or("", |drawing| &drawing.renderer)
+            .map_or("", |resources| &resources.renderer)
     }
 
     /// Whether there is not a pixel to draw on.
@@ -181,10 +184,10 @@ impl View {
         let surface = UVec2::new(size.width, size.height);
         self.growth.came(surface);
         self.look_again();
-        self.change(|view| view.surface = surface);
+        self.change(|gl_window| gl_window.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
-        if let (Some(drawing), (Some(width), Some(height))) = (&self.drawing, size) {
-            drawing.surface.resize(&drawing.context, width, height);
+        if let (Some(resources), (Some(width), Some(height))) = (&self.resources, size) {
+            resources.surface.resize(&resources.context, width, height);
         }
     }
 
@@ -195,7 +198,7 @@ impl View {
             return;
         }
         let side = self.zoom_to_fit().side;
-        self.change(|view| view.panel = open);
+        self.change(|gl_window| gl_window.panel = open);
         if self.is_empty() {
             return;
         }
@@ -218,7 +221,7 @@ impl View {
 
     /// Changes what the layout depends on: what was in the middle of the picture's part stays
     /// there.
-    fn change(&mut self, change: impl FnOnce(&mut View)) {
+    fn change(&mut self, change: impl FnOnce(&mut GlWindow)) {
         let before = self.layout().picture.size();
         change(self);
         let after = self.layout().picture.size();
@@ -310,13 +313,13 @@ impl View {
         rows: Range<u32>,
         waits: bool,
     ) -> Result<Duration, ViewerError> {
-        let Some(drawing) = &mut self.drawing else {
+        let Some(resources) = &mut self.resources else {
             return Err(ViewerError::Lost);
         };
         let start = Instant::now();
-        drawing.screen.upload_rows(image, rows)?;
+        resources.screen.upload_rows(image, rows)?;
         if waits {
-            drawing.screen.finish();
+            resources.screen.finish();
         }
         Ok(start.elapsed())
     }
@@ -329,7 +332,7 @@ impl View {
     /// the next ones before it is believed.
     pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
-        let drawing = self.drawing.as_ref()?;
+        let resources = self.resources.as_ref()?;
         // What shows fewer bits shows other bytes.
         let has_eight_bits = self.config.color_buffer_type() == Some(EIGHT_BITS);
         let is_new = self.presented > self.looked_at;
@@ -337,8 +340,8 @@ impl View {
             return None;
         }
         self.looked_at = self.presented;
-        drawing.screen.draw(surface, placement);
-        let differs = drawing.screen.first_difference(surface, placement, image);
+        resources.screen.draw(surface, placement);
+        let differs = resources.screen.first_difference(surface, placement, image);
         let size = self.window.inner_size();
         self.looks = match differs {
             None => 0,
@@ -365,27 +368,27 @@ impl View {
     ) -> Result<Option<Duration>, ViewerError> {
         let (placement, surface) = (self.placement(), self.surface);
         let (part, cell) = (self.layout().picture, self.cell());
-        let Some(drawing) = &mut self.drawing else {
+        let Some(resources) = &mut self.resources else {
             return Err(ViewerError::Lost);
         };
         let start = Instant::now();
-        drawing.screen.draw(surface, placement);
+        resources.screen.draw(surface, placement);
         for (rect, color) in marks {
             let rect = rect.intersection(part);
             if !rect.is_empty() {
                 let corner = IVec2::new(rect.min.x, surface.y as i32 - rect.max.y);
-                drawing.screen.fill(corner, rect.size(), *color);
+                resources.screen.fill(corner, rect.size(), *color);
             }
         }
-        if !boards.is_empty() || drawing.overlay.is_some() {
-            let gl = drawing.gl.clone();
-            let overlay = drawing
+        if !boards.is_empty() || resources.overlay.is_some() {
+            let gl = resources.gl.clone();
+            let overlay = resources
                 .overlay
                 .get_or_insert_with(|| Overlay::new(gl, cell));
             overlay.draw(surface.y, cell, boards)?;
         }
         if waits {
-            drawing.screen.finish();
+            resources.screen.finish();
         }
         let time = start.elapsed();
         Ok(self.present()?.then_some(time))
@@ -393,18 +396,18 @@ impl View {
 
     /// Draws a window without a picture.
     pub(super) fn clear(&mut self) -> Result<(), ViewerError> {
-        if let Some(drawing) = &self.drawing {
-            drawing.screen.draw(self.surface, Placement::NOWHERE);
+        if let Some(resources) = &self.resources {
+            resources.screen.draw(self.surface, Placement::NOWHERE);
         }
         self.present().map(drop)
     }
 
     fn present(&mut self) -> Result<bool, ViewerError> {
-        let Some(drawing) = &mut self.drawing else {
+        let Some(resources) = &mut self.resources else {
             return Err(ViewerError::Lost);
         };
         self.window.pre_present_notify();
-        if drawing.surface.swap_buffers(&drawing.context).is_ok() {
+        if resources.surface.swap_buffers(&resources.context).is_ok() {
             self.presented += 1;
             return Ok(true);
         }
@@ -453,13 +456,13 @@ impl View {
 /// A rectangle of the window in one colour, over the picture.
 pub(super) type Mark = (Rect, [u8; 3]);
 
-impl Drawing {
+impl GlResources {
     fn new(
         config: &Config,
         window: &Window,
         size: UVec2,
         picture: u32,
-    ) -> Result<Drawing, Failure> {
+    ) -> Result<GlResources, Failure> {
         let display = config.display();
         let handle = window.window_handle()?.as_raw();
         let attributes = ContextAttributesBuilder::new()
@@ -493,7 +496,7 @@ impl Drawing {
         // SAFETY: the context is current, and stays so; where it is lost, the drop of what holds
         // both makes it current before the screen's.
         let screen = unsafe { Screen::new(gl.clone(), picture) }.map_err(ViewerError::from)?;
-        Ok(Drawing {
+        Ok(GlResources {
             overlay: None,
             gl,
             screen,
@@ -504,7 +507,7 @@ impl Drawing {
     }
 }
 
-impl Drop for Drawing {
+impl Drop for GlResources {
     fn drop(&mut self) {
         // Freeing the screen needs its context. Where it is lost, there is nothing left to free.
         let _ = self.context.make_current(&self.surface);

@@ -57,14 +57,14 @@ impl App<'_> {
                 self.touch();
             }
             Action::Fit => {
-                if let Some(view) = &mut self.view {
-                    view.fit();
+                if let Some(gl_window) = &mut self.gl_window {
+                    gl_window.fit();
                 }
                 self.touch();
             }
             Action::FullScreen => {
-                if let Some(view) = &self.view {
-                    view.toggle_full_screen();
+                if let Some(gl_window) = &self.gl_window {
+                    gl_window.toggle_full_screen();
                 }
             }
             Action::Leave => event_loop.exit(),

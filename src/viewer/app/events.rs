@@ -20,7 +20,7 @@ const SCROLLED: isize = 3;
 
 impl ApplicationHandler for App<'_> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.view.is_none() {
+        if self.gl_window.is_none() {
             let opened = self.open(event_loop);
             self.check(event_loop, opened);
         }
@@ -28,13 +28,13 @@ impl ApplicationHandler for App<'_> {
 
     fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
         self.clipboard = None;
-        self.view = None;
+        self.gl_window = None;
     }
 
     fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
         // While the display is still open.
         self.clipboard = None;
-        self.view = None;
+        self.gl_window = None;
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
@@ -72,8 +72,8 @@ impl ApplicationHandler for App<'_> {
                 }
             }
             WindowEvent::CursorMoved { position, .. } => {
-                if let Some(view) = &self.view
-                    && let Some(gesture) = self.pointer.moved(view.window_pixel(position))
+                if let Some(gl_window) = &self.gl_window
+                    && let Some(gesture) = self.pointer.moved(gl_window.window_pixel(position))
                 {
                     self.point(event_loop, gesture);
                 }
@@ -105,15 +105,15 @@ impl ApplicationHandler for App<'_> {
                 }
             }
             WindowEvent::Resized(size) => {
-                if let Some(view) = &mut self.view {
-                    view.resize(size);
-                    view.window().request_redraw();
+                if let Some(gl_window) = &mut self.gl_window {
+                    gl_window.resize(size);
+                    gl_window.window().request_redraw();
                 }
             }
             WindowEvent::Occluded(occluded) => {
                 self.occluded = occluded;
-                if let Some(view) = self.view.as_ref().filter(|_| !occluded) {
-                    view.window().request_redraw();
+                if let Some(gl_window) = self.gl_window.as_ref().filter(|_| !occluded) {
+                    gl_window.window().request_redraw();
                 }
             }
             _ => {}
@@ -139,9 +139,12 @@ impl App<'_> {
             self.touch();
             return true;
         }
-        let full_screen = self.view.as_ref().filter(|view| view.is_full_screen());
-        if let Some(view) = full_screen {
-            view.toggle_full_screen();
+        let full_screen = self
+            .gl_window
+            .as_ref()
+            .filter(|gl_window| gl_window.is_full_screen());
+        if let Some(gl_window) = full_screen {
+            gl_window.toggle_full_screen();
         }
         full_screen.is_some()
     }
@@ -166,21 +169,21 @@ impl App<'_> {
             self.point_at_menu(event_loop, gesture);
             return;
         }
-        let Some(view) = &mut self.view else {
+        let Some(gl_window) = &mut self.gl_window else {
             return;
         };
         match gesture {
-            Gesture::Drag { from, .. } if view.is_over_panel(from) => return,
-            Gesture::Drag { by, .. } => view.drag(by),
-            Gesture::Wheel { steps, at } if view.is_over_panel(at) => {
+            Gesture::Drag { from, .. } if gl_window.is_over_panel(from) => return,
+            Gesture::Drag { by, .. } => gl_window.drag(by),
+            Gesture::Wheel { steps, at } if gl_window.is_over_panel(at) => {
                 if !self.hud.scroll(-SCROLLED * steps as isize) {
                     return;
                 }
             }
-            Gesture::Wheel { steps, at } => view.zoom(steps, at),
+            Gesture::Wheel { steps, at } => gl_window.zoom(steps, at),
             Gesture::Hover => {
                 let place = self.pointer.place();
-                let over = place.and_then(|place| view.picture_pixel(place));
+                let over = place.and_then(|place| gl_window.picture_pixel(place));
                 // The first picture does not wait for what lies over it.
                 if over.is_some() && self.counts.draws > 0 {
                     self.hud.point(Instant::now());
@@ -189,7 +192,8 @@ impl App<'_> {
                 }
             }
             Gesture::Click { at } => {
-                if let (Some(pixel), Some(traced)) = (view.picture_pixel(at), self.content.traced())
+                if let (Some(pixel), Some(traced)) =
+                    (gl_window.picture_pixel(at), self.content.traced())
                 {
                     self.tracing.explain(traced.frame, pixel);
                 }
@@ -202,9 +206,9 @@ impl App<'_> {
     /// Opens the menu at a pixel of the window, or at the corner, or closes it.
     pub(super) fn toggle_menu(&mut self, place: Option<IVec2>) {
         if self.hud.menu.take().is_none()
-            && let Some(view) = &self.view
+            && let Some(gl_window) = &self.gl_window
         {
-            let place = place.map_or(IVec2::ZERO, |place| view.place_of(place));
+            let place = place.map_or(IVec2::ZERO, |place| gl_window.place_of(place));
             self.hud.menu = Some(Menu::open(place));
         }
         self.touch();
@@ -241,13 +245,13 @@ impl App<'_> {
 
     /// What the pointer asks for while the menu is open.
     fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
-        let (Some(view), Some(menu)) = (&self.view, &mut self.hud.menu) else {
+        let (Some(gl_window), Some(menu)) = (&self.gl_window, &mut self.hud.menu) else {
             return;
         };
-        let (surface, cell) = (view.surface(), view.cell());
+        let (surface, cell) = (gl_window.surface(), gl_window.cell());
         match gesture {
             Gesture::Hover => {
-                let under = self.pointer.place().map(|place| view.place_of(place));
+                let under = self.pointer.place().map(|place| gl_window.place_of(place));
                 if !under.is_some_and(|place| menu.hover(place, surface, cell)) {
                     return;
                 }
@@ -255,7 +259,7 @@ impl App<'_> {
             Gesture::Wheel { steps, .. } => menu.step(-steps as isize),
             Gesture::Drag { .. } => return,
             Gesture::Click { at } => {
-                let action = menu.click(view.place_of(at), surface, cell);
+                let action = menu.click(gl_window.place_of(at), surface, cell);
                 self.hud.menu = None;
                 if let Some(action) = action {
                     self.choose(event_loop, action);

@@ -12,7 +12,7 @@ use crate::viewer::window::Mark;
 impl App<'_> {
     /// What the head-up display says about the picture.
     pub(super) fn hud_values(&self) -> HudValues {
-        let (Some(view), Some(traced)) = (&self.view, self.content.traced()) else {
+        let (Some(gl_window), Some(traced)) = (&self.gl_window, self.content.traced()) else {
             return HudValues::default();
         };
         let mut values = HudValues::default();
@@ -21,13 +21,13 @@ impl App<'_> {
         }
         if self.hud.names_pixels()
             && let Some(place) = self.pointer.place()
-            && let Some(pixel) = view.picture_pixel(place)
+            && let Some(pixel) = gl_window.picture_pixel(place)
         {
             // One that was given back a moment ago is followed by another.
             if let Some(samples) = self.content.samples() {
                 values.pixel = name_pixel(samples, pixel);
             }
-            values.pointer = Some(view.place_of(place));
+            values.pointer = Some(gl_window.place_of(place));
         }
         if let Content::Errors(_, errors) = &self.content {
             values.errors = Some(errors.text(traced.frame, self.size));
@@ -51,17 +51,17 @@ impl App<'_> {
 
     /// What is drawn over the picture to show single pixels.
     pub(super) fn marks(&self, values: &HudValues) -> Vec<Mark> {
-        let Some(view) = &self.view else {
+        let Some(gl_window) = &self.gl_window else {
             return Vec::new();
         };
         // A line, as wide as those of the characters.
-        let line = (view.cell().x / 7).max(1) as i32;
+        let line = (gl_window.cell().x / 7).max(1) as i32;
         let rings = values.rings.iter().flat_map(|&pixel| {
-            let bars = ring(view.square(pixel), 4 * line, line);
+            let bars = ring(gl_window.square(pixel), 4 * line, line);
             bars.map(|bar| (bar, WRONG))
         });
         let inspected = self.hud.inspected().into_iter().flat_map(|(pixel, _)| {
-            let square = view.square(pixel);
+            let square = gl_window.square(pixel);
             let black = ring(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
             let white = ring(square, line, line).map(|bar| (bar, [255; 3]));
             black.into_iter().chain(white)
