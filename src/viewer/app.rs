@@ -245,8 +245,8 @@ impl App<'_> {
         }
         let waits = self.hud.information;
         let window = (gl_window.surface(), gl_window.layout());
-        let boards = self.hud.boards(window, gl_window.cell(), &values);
-        let Some(draw) = gl_window.draw((&marks, boards), waits)? else {
+        let text_boxes = self.hud.text_boxes(window, gl_window.cell(), &values);
+        let Some(draw) = gl_window.draw((&marks, text_boxes), waits)? else {
             self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
             return Ok(());

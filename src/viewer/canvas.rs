@@ -1,4 +1,4 @@
-//! Boxes and text, painted on the processor.
+//! Text boxes, painted on the processor.
 
 use glam::{IVec2, UVec2};
 
@@ -12,7 +12,7 @@ pub(super) type Color = [u8; 4];
 /// A rectangle of the window and what is painted on it, in this order. Places are pixels of the
 /// window; what reaches out of the rectangle is cut off.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Board {
+pub(super) struct TextBox {
     pub(super) rect: Rect,
     pub(super) paint: Vec<Paint>,
 }
@@ -26,18 +26,18 @@ pub(super) enum Paint {
     Text(IVec2, String, Color, Rect),
 }
 
-impl Board {
-    /// A board with a ground of one colour.
-    pub(super) fn new(rect: Rect, ground: Color) -> Board {
+impl TextBox {
+    /// A text box with a ground of one colour.
+    pub(super) fn new(rect: Rect, ground: Color) -> TextBox {
         let paint = vec![Paint::Fill(rect, ground)];
-        Board { rect, paint }
+        TextBox { rect, paint }
     }
 
     pub(super) fn fill(&mut self, rect: Rect, color: Color) {
         self.paint.push(Paint::Fill(rect, color));
     }
 
-    /// Text that is cut off at the edges of the board.
+    /// Text that is cut off at the edges of the text box.
     pub(super) fn text(&mut self, place: IVec2, text: impl Into<String>, color: Color) {
         self.text_within(place, text, color, self.rect);
     }
@@ -80,7 +80,7 @@ impl Board {
     }
 }
 
-/// The pixels of a board while it is painted.
+/// The pixels of a text box while it is painted.
 struct Canvas {
     rect: Rect,
     width: usize,
@@ -90,7 +90,7 @@ struct Canvas {
 impl Canvas {
     fn fill(&mut self, rect: Rect, [red, green, blue, alpha]: Color) {
         let part = rect.intersection(self.rect);
-        // One that lies beside the board has no first pixel.
+        // One that lies beside the text box has no first pixel.
         if part.is_empty() {
             return;
         }
@@ -137,37 +137,38 @@ mod tests {
     const WHITE: Color = [255; 4];
     const DARK: Color = [20, 40, 60, 255];
 
-    fn pixel(bytes: &[u8], board: &Board, x: i32, y: i32) -> [u8; 4] {
-        let width = board.rect.size().x as i32;
+    fn pixel(bytes: &[u8], text_box: &TextBox, x: i32, y: i32) -> [u8; 4] {
+        let width = text_box.rect.size().x as i32;
         let first = 4 * (y * width + x) as usize;
         [0, 1, 2, 3].map(|byte| bytes[first + byte])
     }
 
     #[test]
-    fn fills_are_cut_at_the_board_and_keep_their_alpha() {
+    fn fills_are_cut_at_the_text_box_and_keep_their_alpha() {
         let rect = Rect::new(IVec2::new(10, 20), UVec2::new(4, 3));
-        let mut board = Board::new(rect, [0, 0, 0, 0]);
+        let mut text_box = TextBox::new(rect, [0, 0, 0, 0]);
         let half = [255, 100, 0, 128];
-        board.fill(Rect::new(IVec2::new(12, 0), UVec2::new(50, 22)), half);
-        let bytes = board.rasterise(&mut Font::new(7));
+        text_box.fill(Rect::new(IVec2::new(12, 0), UVec2::new(50, 22)), half);
+        let bytes = text_box.rasterise(&mut Font::new(7));
         assert_eq!(bytes.len(), 4 * 12);
-        assert_eq!(pixel(&bytes, &board, 1, 0), [0; 4]);
-        assert_eq!(pixel(&bytes, &board, 2, 1), [128, 50, 0, 128]);
-        assert_eq!(pixel(&bytes, &board, 3, 2), [0; 4]);
+        assert_eq!(pixel(&bytes, &text_box, 1, 0), [0; 4]);
+        assert_eq!(pixel(&bytes, &text_box, 2, 1), [128, 50, 0, 128]);
+        assert_eq!(pixel(&bytes, &text_box, 3, 2), [0; 4]);
     }
 
     #[test]
     fn text_is_blended_and_cut_off() {
         let rect = Rect::new(IVec2::ZERO, UVec2::new(70, 14));
-        let mut board = Board::new(rect, DARK);
-        board.text(IVec2::new(-3, 0), "WWWWWWWWWWWW", WHITE);
+        let mut text_box = TextBox::new(rect, DARK);
+        text_box.text(IVec2::new(-3, 0), "WWWWWWWWWWWW", WHITE);
         let left = Rect::new(IVec2::ZERO, UVec2::new(35, 14));
-        let mut half = Board::new(rect, DARK);
+        let mut half = TextBox::new(rect, DARK);
         half.text_within(IVec2::new(-3, 0), "WWWWWWWWWWWW", WHITE, left);
         let mut font = Font::new(7);
-        let (whole, half) = (board.rasterise(&mut font), half.rasterise(&mut font));
-        let ground =
-            |bytes: &[u8], x: i32| (0..14).all(|y| pixel(bytes, &board, x, y) == [20, 40, 60, 255]);
+        let (whole, half) = (text_box.rasterise(&mut font), half.rasterise(&mut font));
+        let ground = |bytes: &[u8], x: i32| {
+            (0..14).all(|y| pixel(bytes, &text_box, x, y) == [20, 40, 60, 255])
+        };
         assert!((0..70).any(|x| !ground(&whole, x)));
         assert!((0..35).all(|x| ground(&half, x) == ground(&whole, x)));
         assert!((35..70).all(|x| ground(&half, x)));
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beside_a_board_fills_nothing() {
+    fn what_lies_beside_a_text_box_fills_nothing() {
         let rect = |min: [i32; 2], max: [i32; 2]| Rect {
             min: min.into(),
             max: max.into(),
@@ -189,11 +190,11 @@ mod tests {
             rect([-9, 0], [-2, 4]),
             rect([0, 5], [4, 9]),
         ] {
-            let board = Board {
+            let text_box = TextBox {
                 rect: rect([0, 0], [4, 4]),
                 paint: vec![Paint::Fill(beside, [1, 2, 3, 255])],
             };
-            let bytes = board.rasterise(&mut Font::new(7));
+            let bytes = text_box.rasterise(&mut Font::new(7));
             assert_eq!(bytes, [0; 64], "{beside:?}");
         }
     }

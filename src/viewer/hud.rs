@@ -8,7 +8,7 @@ use glam::{IVec2, UVec2};
 use crate::difference::error_color;
 
 use super::action::{Action, DOES, key_table, mouse_table};
-use super::canvas::Board;
+use super::canvas::TextBox;
 use super::comparison::WRONG;
 use super::layout::Layout;
 use super::lines::{DIM, HEADING, INK, Line, wrap};
@@ -147,20 +147,20 @@ impl Hud {
 
     /// Everything that is written in a window of `surface` pixels, with characters of `cell`
     /// pixels.
-    pub(super) fn boards(
+    pub(super) fn text_boxes(
         &mut self,
         (surface, layout): (UVec2, Layout),
         cell: UVec2,
         values: &HudValues,
-    ) -> Vec<Board> {
-        let mut boards = Vec::new();
+    ) -> Vec<TextBox> {
+        let mut text_boxes = Vec::new();
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let named = Some(values.pixel.as_str()).filter(|name| !name.is_empty());
         match layout.panel {
             Some(rect) => {
                 let lines = self.lines(columns(rect, cell), values);
                 let note = message.or(named);
-                boards.push(panel(rect, cell, &lines, note, &mut self.scroll));
+                text_boxes.push(panel(rect, cell, &lines, note, &mut self.scroll));
             }
             None => {
                 // Not over the pixel that it names.
@@ -171,16 +171,16 @@ impl Hud {
                 let notes = notes
                     .into_iter()
                     .skip((message.is_some() && !at_top).into());
-                let board = |(text, at_top): (Option<&str>, bool)| {
+                let text_box = |(text, at_top): (Option<&str>, bool)| {
                     text.map(|text| note(text, layout.picture, cell, at_top))
                 };
-                boards.extend(notes.filter_map(board));
+                text_boxes.extend(notes.filter_map(text_box));
             }
         }
         if let Some(menu) = &self.menu {
-            boards.push(menu.board(surface, cell, &values.on));
+            text_boxes.push(menu.text_box(surface, cell, &values.on));
         }
-        boards
+        text_boxes
     }
 
     /// The lines of the panel.

@@ -1,6 +1,6 @@
 //! Lines of text and coloured cells, wrapped to a number of columns.
 
-use super::canvas::{Board, Color};
+use super::canvas::{Color, TextBox};
 use super::rect::Rect;
 use glam::{IVec2, UVec2};
 
@@ -38,22 +38,22 @@ impl Line {
         self
     }
 
-    /// Paints it on `board`, its first cell's top left corner at `place`, inside `clip`.
-    pub(super) fn paint(&self, board: &mut Board, place: IVec2, cell: UVec2, clip: Rect) {
+    /// Paints it on `text_box`, its first cell's top left corner at `place`, inside `clip`.
+    pub(super) fn paint(&self, text_box: &mut TextBox, place: IVec2, cell: UVec2, clip: Rect) {
         let at = |column: usize| IVec2::new(place.x + (column * cell.x as usize) as i32, place.y);
         for part in &self.0 {
             match part {
                 Part::Text(column, text, color) => {
-                    board.text_within(at(*column), text.as_str(), *color, clip);
+                    text_box.text_within(at(*column), text.as_str(), *color, clip);
                 }
                 Part::Cell(column, color) => {
-                    board.fill(Rect::new(at(*column), cell).intersection(clip), *color);
+                    text_box.fill(Rect::new(at(*column), cell).intersection(clip), *color);
                 }
                 Part::Swatch(column, color) => {
                     let whole = Rect::new(at(*column), cell);
                     let line = (cell.x / 7).max(1) as i32;
-                    board.fill(whole.intersection(clip), DIM);
-                    board.fill(whole.grown(-line).intersection(clip), *color);
+                    text_box.fill(whole.intersection(clip), DIM);
+                    text_box.fill(whole.grown(-line).intersection(clip), *color);
                 }
             }
         }

@@ -3,7 +3,7 @@
 use glam::{IVec2, UVec2};
 
 use super::action::{Action, Row, rows};
-use super::canvas::{Board, Color};
+use super::canvas::{Color, TextBox};
 use super::lines::{DIM, INK};
 use super::rect::Rect;
 
@@ -94,9 +94,9 @@ impl Menu {
     }
 
     /// The menu in a window of `surface` pixels, with a mark before the rows of `on`.
-    pub(super) fn board(&self, surface: UVec2, cell: UVec2, on: &[Action]) -> Board {
+    pub(super) fn text_box(&self, surface: UVec2, cell: UVec2, on: &[Action]) -> TextBox {
         let (rect, places) = self.lie(surface, cell);
-        let mut board = Board::new(rect, GROUND);
+        let mut text_box = TextBox::new(rect, GROUND);
         let left = |row: &Rect, column: u32| {
             let margin = (row.size().y - cell.y) / 2;
             row.min + IVec2::new((cell.x / 2 + column * cell.x) as i32, margin as i32)
@@ -105,19 +105,19 @@ impl Menu {
             if row.opens_group {
                 let corner = place.min - IVec2::new(0, (cell.x / 2) as i32 + 1);
                 let size = UVec2::new(place.size().x, (cell.x / 7).max(1));
-                board.fill(Rect::new(corner, size), LINE);
+                text_box.fill(Rect::new(corner, size), LINE);
             }
             if self.selected == Some(number) {
-                board.fill(*place, CHOSEN);
+                text_box.fill(*place, CHOSEN);
             }
             if on.contains(&row.action) {
-                board.text(left(place, 0), "•", INK);
+                text_box.text(left(place, 0), "•", INK);
             }
-            board.text(left(place, 2), row.label, INK);
+            text_box.text(left(place, 2), row.label, INK);
             let keys = columns() - 1 - row.keys.chars().count() as u32;
-            board.text(left(place, keys), row.keys, DIM);
+            text_box.text(left(place, keys), row.keys, DIM);
         }
-        board
+        text_box
     }
 }
 

@@ -8,14 +8,14 @@ use glam::{IVec2, UVec2};
 use crate::screen::{Layer, ScreenError};
 use crate::text::Font;
 
-use super::canvas::Board;
+use super::canvas::TextBox;
 
-/// The boards that were drawn last, in the context that they were made in. Every method, and the
-/// drop, needs that context to be current.
+/// The text boxes that were drawn last, in the context that they were made in. Every method, and
+/// the drop, needs that context to be current.
 pub(super) struct Overlay {
     gl: Rc<glow::Context>,
     font: Font,
-    shown: Vec<(Board, Layer)>,
+    shown: Vec<(TextBox, Layer)>,
 }
 
 impl Overlay {
@@ -28,7 +28,7 @@ impl Overlay {
         }
     }
 
-    /// Draws `boards` in their order over the bound framebuffer, which is `height` pixels high,
+    /// Draws `text_boxes` in their order over the bound framebuffer, which is `height` pixels high,
     /// with characters of `cell` pixels.
     ///
     /// # Errors
@@ -37,28 +37,28 @@ impl Overlay {
         &mut self,
         height: u32,
         cell: UVec2,
-        boards: Vec<Board>,
+        text_boxes: Vec<TextBox>,
     ) -> Result<(), ScreenError> {
         if self.font.cell() != cell {
             self.font = Font::new(cell.x);
             self.shown.clear();
         }
         // What is not there any more needs no memory.
-        self.shown.truncate(boards.len());
-        for (number, board) in boards.into_iter().enumerate() {
+        self.shown.truncate(text_boxes.len());
+        for (number, text_box) in text_boxes.into_iter().enumerate() {
             if self.shown.len() == number {
                 self.shown
-                    .push((Board::default(), Layer::new(self.gl.clone())?));
+                    .push((TextBox::default(), Layer::new(self.gl.clone())?));
             }
             let (last, layer) = &mut self.shown[number];
-            if *last != board {
-                layer.upload(board.rect.size(), &board.rasterise(&mut self.font))?;
-                *last = board;
+            if *last != text_box {
+                layer.upload(text_box.rect.size(), &text_box.rasterise(&mut self.font))?;
+                *last = text_box;
             }
         }
-        for (board, layer) in &self.shown {
-            let bottom = height as i32 - board.rect.max.y;
-            layer.draw(IVec2::new(board.rect.min.x, bottom));
+        for (text_box, layer) in &self.shown {
+            let bottom = height as i32 - text_box.rect.max.y;
+            layer.draw(IVec2::new(text_box.rect.min.x, bottom));
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use super::canvas::{Board, Color};
+use super::canvas::{Color, TextBox};
 use super::lines::{INK, Line, wrap};
 use super::rect::Rect;
 
@@ -71,8 +71,8 @@ pub(super) fn panel(
     lines: &[Line],
     note: Option<&str>,
     scroll: &mut Scroll,
-) -> Board {
-    let mut board = Board::new(rect, GROUND);
+) -> TextBox {
+    let mut text_box = TextBox::new(rect, GROUND);
     let margin = (MARGIN * cell.x) as i32;
     let inner = rect.grown(-margin);
     let height = cell.y as i32;
@@ -86,10 +86,10 @@ pub(super) fn panel(
     scroll.fit(lines.len(), page);
     let seen = lines.iter().skip(scroll.first).take(page);
     for (line, y) in seen.zip((text.min.y..).step_by(cell.y as usize)) {
-        line.paint(&mut board, IVec2::new(text.min.x, y), cell, text);
+        line.paint(&mut text_box, IVec2::new(text.min.x, y), cell, text);
     }
     for (line, y) in note.iter().zip((note_top..).step_by(cell.y as usize)) {
-        line.paint(&mut board, IVec2::new(inner.min.x, y), cell, inner);
+        line.paint(&mut text_box, IVec2::new(inner.min.x, y), cell, inner);
     }
     if lines.len() > page && page > 0 {
         // As long a part of the edge as the page is of the lines.
@@ -98,14 +98,14 @@ pub(super) fn panel(
         let thumb = (length * page / lines.len()).max(1);
         let width = (cell.x / 2).max(1);
         let corner = IVec2::new(rect.max.x - width as i32, text.min.y + top as i32);
-        board.fill(Rect::new(corner, UVec2::new(width, thumb as u32)), BAR);
+        text_box.fill(Rect::new(corner, UVec2::new(width, thumb as u32)), BAR);
     }
-    board
+    text_box
 }
 
 /// A note over the picture, where there is no panel for it: at the top of `within`, or at its
 /// bottom.
-pub(super) fn note(text: &str, within: Rect, cell: UVec2, at_top: bool) -> Board {
+pub(super) fn note(text: &str, within: Rect, cell: UVec2, at_top: bool) -> TextBox {
     let margin = MARGIN * cell.x;
     let columns = columns(within, cell);
     let lines = wrap(text, columns, 0, INK);
@@ -115,12 +115,12 @@ pub(super) fn note(text: &str, within: Rect, cell: UVec2, at_top: bool) -> Board
     let bottom = within.max.y.saturating_sub_unsigned(size.y);
     let top = if at_top { within.min.y } else { bottom };
     let rect = Rect::new(IVec2::new(within.min.x, top), size);
-    let mut board = Board::new(rect.intersection(within), NOTE);
+    let mut text_box = TextBox::new(rect.intersection(within), NOTE);
     let corner = rect.min + margin as i32;
     for (line, y) in lines.iter().zip((corner.y..).step_by(cell.y as usize)) {
-        line.paint(&mut board, IVec2::new(corner.x, y), cell, rect);
+        line.paint(&mut text_box, IVec2::new(corner.x, y), cell, rect);
     }
-    board
+    text_box
 }
 
 #[cfg(test)]
@@ -130,8 +130,8 @@ mod tests {
 
     const CELL: UVec2 = UVec2::new(7, 14);
 
-    fn texts(board: &Board) -> Vec<&str> {
-        let texts = board.paint.iter().filter_map(|paint| match paint {
+    fn texts(text_box: &TextBox) -> Vec<&str> {
+        let texts = text_box.paint.iter().filter_map(|paint| match paint {
             Paint::Text(_, text, ..) => Some(text.as_str()),
             Paint::Fill(..) => None,
         });
@@ -149,8 +149,8 @@ mod tests {
         let mut scroll = Scroll::default();
         let mut seen = Vec::new();
         loop {
-            let board = panel(rect, CELL, &lines, Some("saved"), &mut scroll);
-            let shown = texts(&board);
+            let text_box = panel(rect, CELL, &lines, Some("saved"), &mut scroll);
+            let shown = texts(&text_box);
             assert_eq!((shown.last(), shown.len()), (Some(&"saved"), 11));
             for text in &shown[..10] {
                 if !seen.contains(&text.to_string()) {
@@ -172,10 +172,10 @@ mod tests {
         let window = Rect::new(IVec2::ZERO, UVec2::new(120, 400));
         let text = "not saved: firsthit.png cannot be written here: make room";
         for at_top in [true, false] {
-            let board = note(text, window, CELL, at_top);
-            assert_eq!(board.rect.intersection(window), board.rect);
-            assert_eq!(texts(&board).join(" "), text);
-            assert_eq!(board.rect.min.y == 0, at_top);
+            let text_box = note(text, window, CELL, at_top);
+            assert_eq!(text_box.rect.intersection(window), text_box.rect);
+            assert_eq!(texts(&text_box).join(" "), text);
+            assert_eq!(text_box.rect.min.y == 0, at_top);
         }
     }
 

@@ -26,7 +26,7 @@ use crate::Image;
 use crate::screen::{Differs, Placement, Screen};
 
 use super::ViewerError;
-use super::canvas::Board;
+use super::canvas::TextBox;
 use super::layout::{Layout, with_panel};
 use super::overlay::Overlay;
 use super::panel;
@@ -358,12 +358,12 @@ impl GlWindow {
         self.looked_at = SETTLING;
     }
 
-    /// Draws the picture, `marks` over it, and `boards` over that. What it took, once it is on the
-    /// way to the display; where `waits`, until it is done. `None` says that the surface was
+    /// Draws the picture, `marks` over it, and `text_boxes` over that. What it took, once it is on
+    /// the way to the display; where `waits`, until it is done. `None` says that the surface was
     /// lost and everything on it made anew, so that a picture must be uploaded again.
     pub(super) fn draw(
         &mut self,
-        (marks, boards): (&[Mark], Vec<Board>),
+        (marks, text_boxes): (&[Mark], Vec<TextBox>),
         waits: bool,
     ) -> Result<Option<Duration>, ViewerError> {
         let (placement, surface) = (self.placement(), self.surface);
@@ -380,12 +380,12 @@ impl GlWindow {
                 resources.screen.fill(corner, rect.size(), *color);
             }
         }
-        if !boards.is_empty() || resources.overlay.is_some() {
+        if !text_boxes.is_empty() || resources.overlay.is_some() {
             let gl = resources.gl.clone();
             let overlay = resources
                 .overlay
                 .get_or_insert_with(|| Overlay::new(gl, cell));
-            overlay.draw(surface.y, cell, boards)?;
+            overlay.draw(surface.y, cell, text_boxes)?;
         }
         if waits {
             resources.screen.finish();
