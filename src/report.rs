@@ -183,7 +183,7 @@ pub fn measure(
     }
     let angles: Vec<f64> = request.frames.clone().map(frame_angle).collect();
     let views = request.scenes.len() * request.stages.len();
-    let work = Work {
+    let measurement = Measurement {
         request,
         threads,
         image: Image::new(request.size)?,
@@ -198,11 +198,11 @@ pub fn measure(
         },
         angles,
     };
-    work.report(&counts)
+    measurement.report(&counts)
 }
 
-/// The measuring under way.
-struct Work<'a> {
+/// A measurement in progress.
+struct Measurement<'a> {
     request: &'a Request,
     threads: usize,
     angles: Vec<f64>,
@@ -226,7 +226,7 @@ impl Steps<'_> {
     }
 }
 
-impl Work<'_> {
+impl Measurement<'_> {
     fn report(mut self, counts: &[usize]) -> Result<Report, ReportError> {
         let mut fillers = Vec::new();
         for &threads in counts {
@@ -367,9 +367,8 @@ pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
 
 impl Report {
     /// Measures what it costs to display a frame, traced by the first kernel on the first scene in
-    /// the first stage. `watch` is called with `true` before a driver
-    /// does something for the first time, and with `false` after it: a driver may never come
-    /// back.
+    /// the first stage. `watch` is called with `true` before each call of a driver that may hang,
+    /// and with `false` after it.
     ///
     /// # Errors
     /// As [`measure`]; where no driver can be had, [`Report::pipeline_table`] says so.

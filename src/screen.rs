@@ -1,4 +1,4 @@
-//! The way of a picture to the screen: uploaded as one retained texture, drawn on one quad, pixel
+//! Pictures on the screen: each is uploaded as one retained texture and drawn on one quad, pixel
 //! for pixel.
 //!
 //! A [`Screen`] is the texture and the quad in whatever OpenGL 3.3 core context is current: a
@@ -52,7 +52,7 @@ pub(crate) use timed::{Cost, DrawMethod, TimedScreen};
 /// the desktop shine through.
 const CLEAR_COLOR: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
 
-/// What changes fragments on their way into the framebuffer, or keeps them out.
+/// The capabilities that change or discard fragments before the framebuffer has them.
 const FRAGMENT_CAPABILITIES: [u32; 8] = [
     glow::BLEND,
     glow::CULL_FACE,
@@ -248,7 +248,7 @@ impl Screen {
         }
     }
 
-    /// Waits until the driver has done all that it was asked to.
+    /// Waits until the driver has done everything (`glFinish`).
     #[cfg(feature = "program")]
     pub(crate) fn finish(&self) {
         // SAFETY: the context is current.

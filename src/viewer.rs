@@ -73,7 +73,7 @@ pub struct Options {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// There is a window with an OpenGL context: whatever might have kept it is behind us.
+    /// The window is open and has an OpenGL context: the driver did not hang.
     Opened,
     /// The first frame is on its way to the display.
     FirstFrame {

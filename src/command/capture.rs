@@ -181,8 +181,9 @@ fn count(frames: &RangeInclusive<u64>) -> u64 {
     (frames.end() - frames.start()).saturating_add(1)
 }
 
-/// How often a picture that takes its time is asked how far it is; most are there before that.
-const LOOK: Duration = Duration::from_millis(200);
+/// How often the progress bar of a picture is updated; most pictures are done before the first
+/// time.
+const UPDATE: Duration = Duration::from_millis(200);
 
 /// Traces a picture, with a bar on standard error that grows with its rows, if that is a terminal.
 fn while_watched<T>(size: u32, progress: &Progress, trace: impl FnOnce() -> T) -> T {
@@ -190,7 +191,7 @@ fn while_watched<T>(size: u32, progress: &Progress, trace: impl FnOnce() -> T) -
         let (traced, is_traced) = mpsc::channel::<()>();
         let watch = move || {
             let bar = ProgressBar::new(size.into()).with_finish(ProgressFinish::AndClear);
-            while is_traced.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+            while is_traced.recv_timeout(UPDATE) == Err(RecvTimeoutError::Timeout) {
                 bar.set_position(progress.rows().into());
             }
         };

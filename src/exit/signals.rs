@@ -1,4 +1,4 @@
-//! Signals that would leave a file behind, or end the program without a word.
+//! Signals that would leave an unfinished file behind, or end the program without a message.
 
 use std::fs;
 use std::sync::Arc;
@@ -11,17 +11,16 @@ use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
-/// Sees to signals from now on.
+/// Handles signals from now on.
 pub(super) fn watch() {
-    // A file that grows beyond what is allowed is an error of the write then, which is told as any
-    // other.
+    // A file that grows beyond its limit then fails to be written, as with any other error.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
-    // C's library aborts, after a line, where it is refused memory that it has no error for: the
-    // status is then that of every failure.
+    // The C library prints a line and aborts where it lacks memory for something that cannot fail:
+    // the exit status is then that of every failure.
     let always = Arc::new(AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, always);
-    // It registers itself what it waits for: where there is no thread for it, signals end the
-    // program as they do any. Before that no file is begun.
+    // The thread itself registers the signals: where there is no thread for it, they keep their
+    // default actions. No file is begun before they are registered.
     let (registered, is_registered) = mpsc::channel();
     let watching = thread::Builder::new()
         .name("signals".to_owned())
@@ -32,8 +31,8 @@ pub(super) fn watch() {
     }
 }
 
-/// Waits for a signal to end on, and ends as the signal does it. `registered` is dropped once
-/// signals come here.
+/// Waits for a signal that ends the program, and then lets its default action do so. `registered`
+/// is dropped once the signals are registered.
 fn wait(registered: Sender<()>) {
     let ignored = ignored();
     let ends = [SIGHUP, SIGINT, SIGTERM].into_iter();
@@ -48,10 +47,9 @@ fn wait(registered: Sender<()>) {
     }
 }
 
-/// The signals that whoever started the program wants to be ignored, as nohup does: a bit for each,
-/// the lowest for the first.
+/// The signals that the parent process has set to be ignored, as nohup does: signal n is bit n − 1.
 fn ignored() -> u64 {
-    // Where the system does not tell, none is.
+    // Where the system does not say, none is ignored.
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())

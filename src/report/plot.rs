@@ -1,11 +1,11 @@
 //! Error against time, as an SVG.
 //!
-//! A panel for each group of scenes, a mark for each kernel: on the way across, its time on one
-//! thread; on the way up, the mean error of its samples in f32 steps, wrong pixels included, with a
-//! line from there to the largest: the scenes differ in brightness by many orders of magnitude, and
-//! steps do not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels
-//! differ in shape, so that the plot reads in grey, and in colours that the colour-blind can tell
-//! apart (Okabe and Ito).
+//! A panel for each group of scenes, a mark for each kernel: its time on one thread horizontally;
+//! vertically the mean error of its samples in f32 steps, wrong pixels included, with a line from
+//! there to the largest: the scenes differ in brightness by many orders of magnitude, and steps do
+//! not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels differ in
+//! shape, so that the plot reads in grey, and in colours that the colour-blind can tell apart
+//! (Okabe and Ito).
 
 mod axis;
 

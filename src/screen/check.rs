@@ -7,8 +7,8 @@ use super::{Placement, Screen};
 use crate::image::{Image, display_byte};
 use crate::memory;
 
-/// As many pixels of a framebuffer are looked at; a whole one of four times the size would be
-/// noticed when a window is resized.
+/// The most pixels of a framebuffer that are compared: to compare four times as many would slow
+/// down the resizing of a window.
 const MOST: u32 = 1 << 20;
 
 /// A pixel of a framebuffer that is not what the picture says.

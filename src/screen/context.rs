@@ -1,4 +1,4 @@
-//! An OpenGL context that needs no window, whatever makes it.
+//! An OpenGL context without a window, of any backend.
 
 use std::ffi::{CStr, c_void};
 
@@ -8,9 +8,9 @@ use crate::fault::caught;
 /// Which OpenGL a context has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Profile {
-    /// Version 3.3 without what is out of date.
+    /// Version 3.3 without deprecated functions.
     Core,
-    /// With it: what the document was written for.
+    /// With the deprecated functions that the document calls.
     #[cfg_attr(
         not(feature = "program"),
         expect(
@@ -23,9 +23,9 @@ pub(super) enum Profile {
 
 /// An OpenGL context that needs no window. It is released when dropped.
 pub(super) trait Context {
-    /// Makes it the context of this thread.
+    /// Makes the context current on this thread.
     fn make_current(&self) -> Result<(), ScreenError>;
-    /// Leaves this thread without a context.
+    /// Leaves this thread without a current context.
     fn release(&self);
     /// The address of an OpenGL function; the context is current.
     fn proc_address(&self, name: &CStr) -> *const c_void;

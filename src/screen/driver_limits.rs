@@ -32,7 +32,7 @@ pub(crate) fn check(size: u32) -> Result<(), ScreenError> {
     threads().map_err(ScreenError::Threads)
 }
 
-/// What can be mapped is limited only where somebody wants it to be (`ulimit -v`).
+/// Checks the address space, which nothing but `ulimit -v` limits.
 #[cfg(target_os = "linux")]
 fn addresses(size: u32) -> Result<(), ScreenError> {
     use rustix::process::{Resource, getrlimit};
@@ -56,13 +56,13 @@ fn addresses(size: u32) -> Result<(), ScreenError> {
     Ok(())
 }
 
-/// So many threads can run beside each other.
+/// Checks that as many threads as a driver starts can run at the same time.
 fn threads() -> std::io::Result<()> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let mut started = Vec::new();
     for _ in 0..cores.min(MOST_RENDERERS) + OTHER_THREADS {
         let (end, wait) = mpsc::channel::<()>();
-        // Each waits until nobody can send any more.
+        // Each thread waits until its sender is dropped.
         let thread = Builder::new()
             .stack_size(1 << 16)
             .spawn(move || wait.iter().count())?;
@@ -70,7 +70,7 @@ fn threads() -> std::io::Result<()> {
     }
     for (end, thread) in started {
         drop(end);
-        // They do nothing that could fail.
+        // The threads do nothing that could fail.
         let _ = thread.join();
     }
     Ok(())

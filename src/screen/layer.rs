@@ -1,5 +1,4 @@
-//! A picture over the picture: boxes with text, in a retained texture that is blended over what
-//! was drawn before.
+//! A text box over the picture: a retained texture that is blended over what was drawn before.
 
 use std::rc::Rc;
 

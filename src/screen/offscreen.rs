@@ -1,4 +1,4 @@
-//! A screen without a window: the picture goes the whole way through OpenGL and comes back.
+//! A screen without a window: pictures are drawn by OpenGL and read back.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -115,8 +115,8 @@ impl Offscreen {
 
 impl Drop for Offscreen {
     fn drop(&mut self) {
-        // For the fields that are dropped next. Where it fails, they had better find no context
-        // than another one.
+        // The fields that are dropped next need their context. Without it, no context is safer for
+        // them than another one.
         if self.context.make_current().is_err() {
             self.context.release();
         }
@@ -127,7 +127,7 @@ impl Drop for Offscreen {
 /// largest size would take 4 GiB.
 const MAX_PIXELS: u32 = 1 << 22;
 
-/// Rows as wide as the picture, as many as are drawn and read back at a time.
+/// A framebuffer as wide as the picture, of as many rows as are drawn and read back at a time.
 ///
 /// Red, green, blue and alpha, because OpenGL need not render to floats without alpha.
 pub(super) struct Framebuffer {
@@ -189,7 +189,7 @@ impl Framebuffer {
         Ok(())
     }
 
-    /// Makes it what is drawn into and read from.
+    /// Binds the framebuffer to be drawn into and read from.
     pub(super) fn bind(&self) {
         // SAFETY: the context is current and the name is of it.
         unsafe {
@@ -198,7 +198,7 @@ impl Framebuffer {
         };
     }
 
-    /// What `screen` shows at one pixel of the framebuffer for each of the picture.
+    /// The picture that `screen` draws, one pixel of the framebuffer for each texel.
     fn read(&self, screen: &Screen) -> Result<Image, ScreenError> {
         let (gl, size) = (&self.gl, self.size.x);
         let mut image = Image::new(size)?;

@@ -254,8 +254,8 @@ impl TimedScreen {
 
 impl Drop for TimedScreen {
     fn drop(&mut self) {
-        // For the fields that are dropped next. Where it fails, they had better find no context
-        // than another one.
+        // The fields that are dropped next need their context. Without it, no context is safer for
+        // them than another one.
         if self.context.make_current().is_err() {
             self.context.release();
         }

@@ -1,4 +1,4 @@
-//! What happens when: the redisplay, and what the other threads have done.
+//! The application: the redisplay, and the replies of the other threads.
 
 mod actions;
 mod events;
@@ -26,12 +26,10 @@ use super::tracing::{Frame, FrameTracer, Reply, Tracing};
 use super::window::GlWindow;
 use super::{Counts, Event, Options, ViewerError};
 
-/// How long a window that asks to be drawn waits for the picture that is on its way, before it gets
-/// the old one.
+/// How long a redisplay waits for the next picture before it draws the last one again.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// How soon to look again for a window that nothing can be drawn on and that does not say when that
-/// ends.
+/// How often a window that nothing can be drawn on is polled: no event says when that ends.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// Opens the viewer and stays until it is left.
@@ -98,12 +96,12 @@ struct App<'a> {
     content: Content,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     gl_window: Option<GlWindow>,
-    /// As long as there is a window.
+    /// `None` without a window.
     clipboard: Option<Clipboard>,
-    /// The window is drawn again without waiting for the picture that is on its way: it took too
-    /// long, or something else changed.
+    /// The next redisplay does not wait for the next picture: that took too long, or something else
+    /// has changed.
     overdue: bool,
-    /// Not before this the playing animation is drawn again.
+    /// When the next frame of the playing animation is due.
     next_frame: Instant,
     modifiers: ModifiersState,
     pointer: Pointer,
@@ -122,7 +120,7 @@ struct App<'a> {
 }
 
 impl App<'_> {
-    /// After the last event.
+    /// Ends the viewer after the last event.
     fn leave(mut self, ended_well: bool) -> Result<(), ViewerError> {
         self.counts.traces = self.tracing.traces;
         for reply in self.tracing.finish() {
@@ -159,8 +157,8 @@ impl App<'_> {
             .is_behind(self.content.traced().map(|traced| traced.frame))
     }
 
-    /// Asks for the next picture: of the present α, which moves on at `now` if the animation plays
-    /// and no picture of it is due.
+    /// Requests the next picture. Before that α advances to `now`, if the animation plays and its
+    /// last picture has come.
     fn advance(&mut self, now: Instant) {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
@@ -172,8 +170,8 @@ impl App<'_> {
         self.tracing.request(self.wanted());
     }
 
-    /// Brings what is to be shown into the texture, unless it is there already or cannot be had.
-    /// Returns whether it was brought.
+    /// Uploads what the texture lacks of the content, if that can be had. Returns whether there was
+    /// anything to upload.
     fn upload(&mut self) -> Result<bool, ViewerError> {
         let (Some(gl_window), Some((image, rows))) =
             (&mut self.gl_window, self.content.to_upload())
@@ -186,7 +184,7 @@ impl App<'_> {
         Ok(true)
     }
 
-    /// Looks whether the driver shows what is uploaded, where it was not looked at in this size.
+    /// Checks that the driver shows what is uploaded, once in each size of the window.
     fn examine(&mut self) {
         if let (Some(gl_window), Some(image)) = (&mut self.gl_window, self.content.in_texture())
             && let Some(differs) = gl_window.examine(image)
@@ -196,7 +194,7 @@ impl App<'_> {
         }
     }
 
-    /// Shows the last picture, and sees to the next one if there is one to come.
+    /// Draws the content, and requests the next picture if there is to be one.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let start = Instant::now();
         let overdue = std::mem::take(&mut self.overdue);
@@ -279,7 +277,7 @@ impl App<'_> {
             .is_some_and(|frames| self.counts.draws + 1 >= frames)
     }
 
-    /// Whether there is anything to draw on that is seen.
+    /// Whether the window can be drawn on and seen.
     fn visible(&mut self) -> bool {
         let Some(gl_window) = &self.gl_window else {
             return false;
@@ -290,8 +288,8 @@ impl App<'_> {
         !(self.occluded || self.minimized || gl_window.is_empty())
     }
 
-    /// What is only looked at now and then while the animation plays: each time it asks the
-    /// display.
+    /// Polls the display for the state of the window: only now and then, since each time is a round
+    /// trip.
     fn look_around(&mut self) {
         if let Some(gl_window) = &self.gl_window {
             self.minimized = gl_window.is_minimized();
@@ -300,7 +298,7 @@ impl App<'_> {
         self.retitle();
     }
 
-    /// After a frame: the next one, if it comes by itself.
+    /// Schedules the frame after this one, if it follows without an event.
     fn schedule(&mut self, event_loop: &ActiveEventLoop) {
         let last = self
             .exit_after_frames
@@ -312,8 +310,8 @@ impl App<'_> {
         }
     }
 
-    /// Draws the next frame when the display has shown the last one: one that waits for its own
-    /// refresh has kept us about as long, one that does not is waited for here.
+    /// Requests the next frame once the display has shown the last one. A driver with vertical sync
+    /// has waited for that; without, the event loop waits.
     fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
         if Instant::now() < self.next_frame {
             event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
@@ -322,7 +320,7 @@ impl App<'_> {
         }
     }
 
-    /// Takes what the tracing thread has done.
+    /// Handles the replies of the other threads.
     fn receive(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         while let Some(reply) = self.tracing.reply() {
             match reply {
@@ -378,7 +376,7 @@ impl App<'_> {
         Ok(())
     }
 
-    /// Something but the picture looks different now.
+    /// Requests a redisplay at once, for something other than the picture has changed.
     fn touch(&mut self) {
         let open = self.hud.has_panel() || self.content.shows_errors();
         if let Some(gl_window) = &mut self.gl_window {
@@ -388,7 +386,7 @@ impl App<'_> {
         self.ask_for_redraw();
     }
 
-    /// Asks for the errors of the picture that is shown, if they are to be seen.
+    /// Requests the errors of the picture, if they are to be shown.
     fn compare(&mut self) {
         if let Some(frame) = self.content.frame_to_compare() {
             self.comparing.request(frame);

@@ -15,10 +15,10 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Divides a window of `surface` pixels. A panel, which likes to be `wanted` pixels wide and
-    /// high, stands to the right of a picture of `size` × `size` pixels; below it, where the
-    /// window is taller than wide. It leaves the picture a square of the window's shorter side,
-    /// or half of the window, and takes what the picture has no use for.
+    /// Divides a window of `surface` pixels. A panel, which should be `wanted` pixels wide and
+    /// high, stands to the right of a picture of `size` × `size` pixels; below it, where the window
+    /// is taller than wide. It leaves the picture a square of the window's shorter side, or half of
+    /// the window, and takes what the picture has no use for.
     pub(super) fn new(surface: UVec2, size: u32, wanted: Option<UVec2>) -> Layout {
         let window = Rect::new(IVec2::ZERO, surface);
         let Some(wanted) = wanted else {

@@ -28,7 +28,7 @@ impl Menu {
         }
     }
 
-    /// Goes by so many rows from the selected one, and around.
+    /// Selects the row so many rows further, around the ends.
     pub(super) fn step(&mut self, by: isize) {
         let count = rows().count() as isize;
         let from = match self.selected {
@@ -62,14 +62,14 @@ impl Menu {
     }
 
     fn row_at(&self, place: IVec2, surface: UVec2, cell: UVec2) -> Option<usize> {
-        let (rect, rows) = self.lie(surface, cell);
+        let (rect, rows) = self.layout(surface, cell);
         let mut rows = rows.iter();
         rows.position(|row| row.intersection(rect).contains(place))
     }
 
     /// Where the menu and its rows lie in a window of `surface` pixels. A menu that is higher than
     /// the window is moved so that the selected row is seen.
-    fn lie(&self, surface: UVec2, cell: UVec2) -> (Rect, Vec<Rect>) {
+    fn layout(&self, surface: UVec2, cell: UVec2) -> (Rect, Vec<Rect>) {
         let border = (cell.x / 2) as i32;
         let width = (columns() * cell.x) as i32 + 2 * border;
         let mut y = border;
@@ -95,7 +95,7 @@ impl Menu {
 
     /// The menu in a window of `surface` pixels, with a mark before the rows of `on`.
     pub(super) fn text_box(&self, surface: UVec2, cell: UVec2, on: &[Action]) -> TextBox {
-        let (rect, places) = self.lie(surface, cell);
+        let (rect, places) = self.layout(surface, cell);
         let mut text_box = TextBox::new(rect, GROUND);
         let left = |row: &Rect, column: u32| {
             let margin = (row.size().y - cell.y) / 2;
@@ -159,7 +159,7 @@ mod tests {
     fn the_pointer_selects_what_it_is_on() {
         let surface = UVec2::new(500, 500);
         let mut menu = Menu::open(IVec2::new(20, 20));
-        let (rect, places) = menu.lie(surface, CELL);
+        let (rect, places) = menu.layout(surface, CELL);
         assert_eq!(rect.min, IVec2::new(20, 20));
         let middle = |row: usize| (places[row].min + places[row].max) / 2;
         assert!(menu.hover(middle(1), surface, CELL));
@@ -178,7 +178,7 @@ mod tests {
         let mut menu = Menu::open(IVec2::new(50, 50));
         for number in 0..rows().count() {
             menu.step(1);
-            let (rect, places) = menu.lie(surface, CELL);
+            let (rect, places) = menu.layout(surface, CELL);
             let seen = places[number].intersection(rect).size().y;
             assert_eq!(seen, places[number].size().y, "row {number}");
         }

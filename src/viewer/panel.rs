@@ -10,10 +10,10 @@ const GROUND: Color = [24, 24, 30, 255];
 const BAR: Color = [90, 90, 100, 255];
 const NOTE: Color = [0, 0, 0, 200];
 
-/// So many characters are as wide as a panel likes to be.
+/// The width that a panel should have, in characters.
 const COLUMNS: u32 = 54;
 
-/// So many lines it likes to have below the picture.
+/// The height that a panel below the picture should have, in lines.
 const ROWS: u32 = 26;
 
 /// The lines at the bottom that are kept free for a note, so that nothing moves when one comes.
@@ -22,7 +22,7 @@ const NOTE_LINES: usize = 2;
 /// The margin on each side, in characters' widths.
 const MARGIN: u32 = 1;
 
-/// The width and height in pixels that a panel likes to have, with such characters.
+/// The width and height in pixels that a panel with such characters should have.
 pub(super) fn wanted(cell: UVec2) -> UVec2 {
     UVec2::new(COLUMNS, ROWS) * cell + 2 * MARGIN * cell.x
 }
@@ -42,7 +42,7 @@ pub(super) struct Scroll {
 }
 
 impl Scroll {
-    /// Goes on by so many lines; back where they are negative. Whether that changes anything.
+    /// Scrolls by so many lines, back where they are negative; whether that changes anything.
     pub(super) fn by(&mut self, lines: isize) -> bool {
         let last = self.lines.saturating_sub(self.page);
         let before = self.first;
@@ -50,13 +50,13 @@ impl Scroll {
         self.first != before
     }
 
-    /// Goes on by almost a page, or back.
+    /// Scrolls by almost a page, forward or back; whether that changes anything.
     pub(super) fn turn(&mut self, forward: bool) -> bool {
         let page = self.page.saturating_sub(2).max(1) as isize;
         self.by(if forward { page } else { -page })
     }
 
-    /// There are now so many lines, and so many of them are seen at a time.
+    /// Keeps the position within so many lines, of which a page is seen at a time.
     fn fit(&mut self, lines: usize, page: usize) {
         (self.lines, self.page) = (lines, page);
         self.by(0);
@@ -92,7 +92,7 @@ pub(super) fn panel(
         line.paint(&mut text_box, IVec2::new(inner.min.x, y), cell, inner);
     }
     if lines.len() > page && page > 0 {
-        // As long a part of the edge as the page is of the lines.
+        // The thumb is to the edge what the page is to the lines.
         let length = text.size().y as usize;
         let top = length * scroll.first / lines.len();
         let thumb = (length * page / lines.len()).max(1);

@@ -17,7 +17,7 @@ pub(super) enum Gesture {
     Drag { from: IVec2, by: IVec2 },
     /// Notches of the wheel; away from the person is positive, and nearer to the picture.
     Wheel { steps: i32, at: IVec2 },
-    /// It went to another place, and nothing was pressed.
+    /// The pointer moved while no button was down.
     Hover,
     /// The left button was pressed and let go without moving.
     Click { at: IVec2 },
@@ -29,7 +29,7 @@ pub(super) struct Pointer {
     /// `None` where it is outside.
     place: Option<IVec2>,
     press: Option<Press>,
-    /// Notches that are not a whole one yet.
+    /// The fraction of a notch that was turned since the last whole one.
     notches: f64,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Pointer {
 struct Press {
     /// Where it went down.
     start: IVec2,
-    /// It is no click any more.
+    /// The press has become a drag.
     drags: bool,
 }
 

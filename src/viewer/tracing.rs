@@ -53,7 +53,7 @@ pub(super) enum Reply {
     Explained(UVec2, String),
     /// The kernel does not trace such a scene.
     Refused(Frame, TraceError),
-    /// Something is wanting that no other picture needs less of.
+    /// A failure that no other picture would avoid.
     Failed(ViewerError),
 }
 
@@ -63,17 +63,17 @@ pub(super) struct FrameTracer {
     tracer: Tracer,
     threads: usize,
     size: u32,
-    /// Every picture that was ever handed out, the one that was traced last at the end. One that
-    /// nobody holds any more is traced over.
+    /// The pool: every picture that was handed out, the last one at the end. A picture that nobody
+    /// else holds is traced over.
     pictures: Vec<Arc<Image>>,
-    /// What the last one is of, if it is still that.
+    /// What the last picture shows; `None` where it was overwritten.
     last: Option<Traced>,
     traces: u64,
 }
 
 impl FrameTracer {
     /// # Errors
-    /// Where there are no threads, or no room for the picture.
+    /// Where there are no threads, or no memory for the picture.
     pub(super) fn new(options: &Options) -> Result<FrameTracer, ViewerError> {
         Ok(FrameTracer {
             scene: options.scene.clone(),
@@ -134,7 +134,8 @@ impl FrameTracer {
         Ok(())
     }
 
-    /// A picture that nobody looks at, taken from the others: that of the last frame, if it is one.
+    /// A picture that nobody else holds, taken out of the pool: the last one if possible, or else a
+    /// new one.
     fn free_picture(&mut self) -> Result<Arc<Image>, ViewerError> {
         let free = self
             .pictures
@@ -223,7 +224,7 @@ impl Tracing {
         Some(reply)
     }
 
-    /// Waits for what has to be done, and gives the last replies.
+    /// Waits for the queued tasks, and gives the last replies.
     pub(super) fn finish(self) -> impl Iterator<Item = Reply> {
         self.worker.finish().into_iter().map(|(_, reply)| reply)
     }

@@ -169,7 +169,7 @@ impl GlWindow {
             .map_or("", |resources| &resources.renderer)
     }
 
-    /// Whether there is not a pixel to draw on.
+    /// Whether the surface has no pixels.
     pub(super) fn is_empty(&self) -> bool {
         self.surface.min_element() == 0
     }
@@ -214,7 +214,7 @@ impl GlWindow {
         }
     }
 
-    /// Until when a new size of the window is waited for, if it is.
+    /// Until when a new size of the window is awaited, if one is.
     pub(super) fn awaits_size(&mut self, now: Instant) -> Option<Instant> {
         self.growth.awaited(now)
     }

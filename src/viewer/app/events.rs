@@ -149,7 +149,7 @@ impl App<'_> {
         full_screen.is_some()
     }
 
-    /// What a key does for the panel, if it is one of the panel's own.
+    /// Handles a key of the panel; whether it was one.
     fn panel_key(&mut self, key: &Key) -> bool {
         let forward = match key {
             Key::Named(NamedKey::PageDown) => true,
@@ -163,7 +163,7 @@ impl App<'_> {
         turned
     }
 
-    /// What the pointer asks for.
+    /// Handles a gesture of the pointer.
     fn point(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
         if self.hud.menu.is_some() {
             self.point_at_menu(event_loop, gesture);
@@ -214,7 +214,7 @@ impl App<'_> {
         self.touch();
     }
 
-    /// What a key does while the menu is open, if it is one of the menu's own.
+    /// Handles a key of the open menu; whether it was one.
     fn menu_key(&mut self, event_loop: &ActiveEventLoop, key: &Key) -> bool {
         let Some(menu) = &mut self.hud.menu else {
             return false;
@@ -243,7 +243,7 @@ impl App<'_> {
         }
     }
 
-    /// What the pointer asks for while the menu is open.
+    /// Handles a gesture of the pointer while the menu is open.
     fn point_at_menu(&mut self, event_loop: &ActiveEventLoop, gesture: Gesture) {
         let (Some(gl_window), Some(menu)) = (&self.gl_window, &mut self.hud.menu) else {
             return;

@@ -1,4 +1,4 @@
-//! What there is to say about the picture that is shown.
+//! The values that the head-up display shows.
 
 use super::App;
 use crate::Stage;
@@ -23,7 +23,7 @@ impl App<'_> {
             && let Some(place) = self.pointer.place()
             && let Some(pixel) = gl_window.picture_pixel(place)
         {
-            // One that was given back a moment ago is followed by another.
+            // Where the samples were given back, the next picture's come soon.
             if let Some(samples) = self.content.samples() {
                 values.pixel = name_pixel(samples, pixel);
             }
@@ -49,12 +49,12 @@ impl App<'_> {
         values
     }
 
-    /// What is drawn over the picture to show single pixels.
+    /// The marks around single pixels of the picture.
     pub(super) fn marks(&self, values: &HudValues) -> Vec<Mark> {
         let Some(gl_window) = &self.gl_window else {
             return Vec::new();
         };
-        // A line, as wide as those of the characters.
+        // As wide as a stroke of the characters.
         let line = (gl_window.cell().x / 7).max(1) as i32;
         let rings = values.rings.iter().flat_map(|&pixel| {
             let bars = ring(gl_window.square(pixel), 4 * line, line);

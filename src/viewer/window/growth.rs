@@ -14,7 +14,7 @@ const PATIENCE: Duration = Duration::from_millis(100);
 pub(super) struct Growth {
     /// The sizes before and after it grew; `None` where it did not.
     grown: Option<[UVec2; 2]>,
-    /// A new size is on its way, but nobody waits for it any longer than until then.
+    /// Until when a new size is awaited, if one is.
     awaited: Option<Instant>,
 }
 
@@ -62,7 +62,7 @@ impl Growth {
         window.request_inner_size(PhysicalSize::new(size.x, size.y))
     }
 
-    /// Until when a new size of the window is waited for, if it is.
+    /// Until when a new size of the window is awaited, if one is.
     pub(super) fn awaited(&mut self, now: Instant) -> Option<Instant> {
         self.awaited.take_if(|until| *until <= now);
         self.awaited

@@ -1,4 +1,4 @@
-//! The way from a display to OpenGL.
+//! OpenGL on a display: its functions and its configuration.
 
 use glutin::config::{ColorBufferType, Config, ConfigTemplateBuilder};
 use glutin::display::{Display, DisplayApiPreference};
@@ -66,14 +66,14 @@ fn preference(
     DisplayApiPreference::Cgl
 }
 
-/// What a display of today shows of a colour.
+/// The colour depth of a usual display.
 pub(super) const EIGHT_BITS: ColorBufferType = ColorBufferType::Rgb {
     r_size: 8,
     g_size: 8,
     b_size: 8,
 };
 
-/// The plainest configuration for a window: 8 bits a colour, and no alpha through which the desktop
+/// The simplest configuration for a window: 8 bits a colour, and no alpha through which the desktop
 /// could shine.
 pub(super) fn config(display: &Display) -> Result<Config, Failure> {
     let template = ConfigTemplateBuilder::new()
@@ -120,9 +120,9 @@ pub(super) fn fitting(attributes: WindowAttributes, _config: &Config) -> WindowA
 
 /// Why a window or what is in it could not be made.
 pub(super) enum Failure {
-    /// This way to OpenGL is closed; another may be open.
+    /// OpenGL fails by this API of the display; another may work.
     OpenGl(String),
-    /// No way leads further.
+    /// An error that no other API avoids.
     Viewer(ViewerError),
 }
 
