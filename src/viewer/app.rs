@@ -30,7 +30,7 @@ use super::{Counts, Event, Options, ViewerError};
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// How often a window that nothing can be drawn on is polled: no event says when that ends.
-const LOOK_AGAIN: Duration = Duration::from_millis(250);
+const POLL: Duration = Duration::from_millis(250);
 
 /// Opens the viewer and stays until it is left.
 pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
@@ -185,9 +185,9 @@ impl App<'_> {
     }
 
     /// Checks that the driver shows what is uploaded, once in each size of the window.
-    fn examine(&mut self) {
+    fn check_pixels(&mut self) {
         if let (Some(gl_window), Some(image)) = (&mut self.gl_window, self.content.in_texture())
-            && let Some(differs) = gl_window.examine(image)
+            && let Some(differs) = gl_window.check_pixels(image)
         {
             let renderer = gl_window.renderer().to_owned();
             (self.report)(Event::Differs { renderer, differs });
@@ -203,7 +203,7 @@ impl App<'_> {
             self.playback.hold();
             self.frame_rate.stop();
             if self.minimized {
-                event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
+                event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             }
             return Ok(());
         }
@@ -212,7 +212,7 @@ impl App<'_> {
             self.playback.count_from(start - self.frame_time);
         }
         let is_new = self.upload()?;
-        self.examine();
+        self.check_pixels();
         // The next picture is traced while this one is drawn.
         if !self.is_last() {
             self.advance(start);
@@ -246,7 +246,7 @@ impl App<'_> {
         let text_boxes = self.hud.text_boxes(window, gl_window.cell(), &values);
         let Some(draw) = gl_window.draw((&marks, text_boxes), waits)? else {
             self.content.lose_texture();
-            event_loop.set_control_flow(ControlFlow::WaitUntil(start + LOOK_AGAIN));
+            event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             return Ok(());
         };
         self.times.draw = draw;
@@ -259,7 +259,7 @@ impl App<'_> {
             });
         }
         if self.playing() && self.frame_rate.count(start) {
-            self.look_around();
+            self.poll_window();
         }
         self.next_frame = start + self.frame_time;
         // The time that a comparison takes is seen to pass.
@@ -290,7 +290,7 @@ impl App<'_> {
 
     /// Polls the display for the state of the window: only now and then, since each time is a round
     /// trip.
-    fn look_around(&mut self) {
+    fn poll_window(&mut self) {
         if let Some(gl_window) = &self.gl_window {
             self.minimized = gl_window.is_minimized();
             self.frame_time = gl_window.frame_time();

@@ -35,11 +35,11 @@ use super::zoom::Zoom;
 use growth::Growth;
 use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
 
-/// A driver that shows something else in so many frames in a row is wrong.
-const LOOKS: u32 = 4;
+/// A driver that shows wrong pixels in so many checks in a row is wrong.
+const CHECKS: u32 = 4;
 
-/// So many frames are presented in a size before it is looked at one.
-const SETTLING: u64 = 2;
+/// So many frames are presented in a size before the first check.
+const UNCHECKED: u64 = 2;
 
 /// A window with an OpenGL context.
 pub(super) struct GlWindow {
@@ -56,11 +56,12 @@ pub(super) struct GlWindow {
     panel: bool,
     /// What the window was asked to become for the panel.
     growth: Growth,
-    /// How often it may still be looked whether the driver shows what is drawn.
-    looks: u32,
-    /// The frames presented in this size, and how many they were when it was looked at last.
+    /// How often the pixels may still be checked in this size.
+    checks_left: u32,
+    /// The frames presented in this size.
     presented: u64,
-    looked_at: u64,
+    /// How many these were at the last check.
+    checked_at: u64,
 }
 
 /// The context and its objects, lost together. Dropped in this order: the screen needs the context.
@@ -136,9 +137,9 @@ impl GlWindow {
             zoom: Zoom::default(),
             panel: false,
             growth: Growth::default(),
-            looks: LOOKS,
+            checks_left: CHECKS,
             presented: 0,
-            looked_at: SETTLING,
+            checked_at: UNCHECKED,
         };
         gl_window.renew()?;
         Ok(gl_window)
@@ -148,7 +149,7 @@ impl GlWindow {
     /// after it.
     fn renew(&mut self) -> Result<(), Failure> {
         self.resources = None;
-        self.look_again();
+        self.restart_checks();
         self.resources = Some(GlResources::new(
             &self.config,
             &self.window,
@@ -182,8 +183,8 @@ impl GlWindow {
     /// The window has a new size, in pixels.
     pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let surface = UVec2::new(size.width, size.height);
-        self.growth.came(surface);
-        self.look_again();
+        self.growth.resized(surface);
+        self.restart_checks();
         self.change(|gl_window| gl_window.surface = surface);
         let size = (NonZeroU32::new(size.width), NonZeroU32::new(size.height));
         if let (Some(resources), (Some(width), Some(height))) = (&self.resources, size) {
@@ -324,38 +325,38 @@ impl GlWindow {
         Ok(start.elapsed())
     }
 
-    /// Draws `image`, which is uploaded, and finds the first pixel that is not what it should be:
+    /// Draws `image`, which is uploaded, and finds the first pixel that the driver shows wrong:
     /// once in each size of the window.
     ///
     /// A window that is just being resized on the display may hold anything for some frames. So the
-    /// first that are presented in a size are not looked at, and what differs is looked at again in
-    /// the next ones before it is believed.
-    pub(super) fn examine(&mut self, image: &Image) -> Option<Differs> {
+    /// first frames that are presented in a size are not checked, and wrong pixels are checked
+    /// again in the next frames before the driver is called wrong.
+    pub(super) fn check_pixels(&mut self, image: &Image) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
         let resources = self.resources.as_ref()?;
-        // What shows fewer bits shows other bytes.
+        // A surface of fewer bits shows other bytes.
         let has_eight_bits = self.config.color_buffer_type() == Some(EIGHT_BITS);
-        let is_new = self.presented > self.looked_at;
-        if self.looks == 0 || !is_new || self.is_empty() || !has_eight_bits {
+        let is_new = self.presented > self.checked_at;
+        if self.checks_left == 0 || !is_new || self.is_empty() || !has_eight_bits {
             return None;
         }
-        self.looked_at = self.presented;
+        self.checked_at = self.presented;
         resources.screen.draw(surface, placement);
         let differs = resources.screen.first_difference(surface, placement, image);
         let size = self.window.inner_size();
-        self.looks = match differs {
+        self.checks_left = match differs {
             None => 0,
-            Some(_) => self.looks - 1,
+            Some(_) => self.checks_left - 1,
         };
         let is_settled = UVec2::new(size.width, size.height) == surface;
-        differs.filter(|_| self.looks == 0 && is_settled)
+        differs.filter(|_| self.checks_left == 0 && is_settled)
     }
 
-    /// The display may hold anything before it has presented some frames.
-    fn look_again(&mut self) {
-        self.looks = LOOKS;
+    /// Checks the pixels anew: the surface has another size, or is another one.
+    fn restart_checks(&mut self) {
+        self.checks_left = CHECKS;
         self.presented = 0;
-        self.looked_at = SETTLING;
+        self.checked_at = UNCHECKED;
     }
 
     /// Draws the picture, `marks` over it, and `text_boxes` over that. What it took, once it is on

@@ -21,7 +21,7 @@ pub(super) struct Growth {
 impl Growth {
     /// The window has a new size. The first one after it was asked to grow is as large as the
     /// window manager let it become.
-    pub(super) fn came(&mut self, surface: UVec2) {
+    pub(super) fn resized(&mut self, surface: UVec2) {
         if let (Some([_, after]), Some(_)) = (&mut self.grown, self.awaited.take()) {
             *after = surface;
         }
