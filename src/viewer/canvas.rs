@@ -27,9 +27,9 @@ pub(super) enum Paint {
 }
 
 impl TextBox {
-    /// A text box with a ground of one colour.
-    pub(super) fn new(rect: Rect, ground: Color) -> TextBox {
-        let paint = vec![Paint::Fill(rect, ground)];
+    /// A text box with a background of one colour.
+    pub(super) fn new(rect: Rect, background: Color) -> TextBox {
+        let paint = vec![Paint::Fill(rect, background)];
         TextBox { rect, paint }
     }
 
@@ -166,12 +166,12 @@ mod tests {
         half.text_within(IVec2::new(-3, 0), "WWWWWWWWWWWW", WHITE, left);
         let mut font = Font::new(7);
         let (whole, half) = (text_box.rasterise(&mut font), half.rasterise(&mut font));
-        let ground = |bytes: &[u8], x: i32| {
+        let background = |bytes: &[u8], x: i32| {
             (0..14).all(|y| pixel(bytes, &text_box, x, y) == [20, 40, 60, 255])
         };
-        assert!((0..70).any(|x| !ground(&whole, x)));
-        assert!((0..35).all(|x| ground(&half, x) == ground(&whole, x)));
-        assert!((35..70).all(|x| ground(&half, x)));
+        assert!((0..70).any(|x| !background(&whole, x)));
+        assert!((0..35).all(|x| background(&half, x) == background(&whole, x)));
+        assert!((35..70).all(|x| background(&half, x)));
         // All of a pixel that is covered wholly.
         assert_eq!(
             [times(255, 255), times(7, 0), times(255, 128)],

@@ -14,7 +14,7 @@ enum Part {
     Text(usize, String, Color),
     /// One cell, filled.
     Cell(usize, Color),
-    /// The same with a frame, which also shows the colour of the ground.
+    /// The same with a frame, which also shows the colour of the background.
     Swatch(usize, Color),
 }
 

@@ -7,7 +7,7 @@ use super::canvas::{Color, TextBox};
 use super::lines::{DIM, INK};
 use super::rect::Rect;
 
-const GROUND: Color = [40, 40, 48, 250];
+const BACKGROUND: Color = [40, 40, 48, 250];
 const CHOSEN: Color = [70, 90, 150, 255];
 const LINE: Color = [90, 90, 100, 255];
 
@@ -96,7 +96,7 @@ impl Menu {
     /// The menu in a window of `surface` pixels, with a mark before the rows of `on`.
     pub(super) fn text_box(&self, surface: UVec2, cell: UVec2, on: &[Action]) -> TextBox {
         let (rect, places) = self.layout(surface, cell);
-        let mut text_box = TextBox::new(rect, GROUND);
+        let mut text_box = TextBox::new(rect, BACKGROUND);
         let left = |row: &Rect, column: u32| {
             let margin = (row.size().y - cell.y) / 2;
             row.min + IVec2::new((cell.x / 2 + column * cell.x) as i32, margin as i32)

@@ -6,7 +6,7 @@ use super::canvas::{Color, TextBox};
 use super::lines::{INK, Line, wrap};
 use super::rect::Rect;
 
-const GROUND: Color = [24, 24, 30, 255];
+const BACKGROUND: Color = [24, 24, 30, 255];
 const BAR: Color = [90, 90, 100, 255];
 const NOTE: Color = [0, 0, 0, 200];
 
@@ -72,7 +72,7 @@ pub(super) fn panel(
     note: Option<&str>,
     scroll: &mut Scroll,
 ) -> TextBox {
-    let mut text_box = TextBox::new(rect, GROUND);
+    let mut text_box = TextBox::new(rect, BACKGROUND);
     let margin = (MARGIN * cell.x) as i32;
     let inner = rect.grown(-margin);
     let height = cell.y as i32;
