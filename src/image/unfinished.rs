@@ -72,15 +72,15 @@ mod nameless {
         Some(file)
     }
 
-    /// What the system lists an open file as.
+    /// The path by which the system lists an open file.
     fn handle(file: &File) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
     }
 
     pub(super) fn persist(file: &File, folder: &Path, target: &Path) -> io::Result<()> {
         match link(file, target) {
-            // A file without a name can only get a new one: for an instant it has another, to be
-            // renamed from.
+            // A link replaces no file: the file gets a temporary name first, and is renamed from
+            // that.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 let (named, ()) = Named::with(folder, |name| link(file, name))?;
                 named.persist(target)
@@ -103,7 +103,7 @@ mod nameless {
 /// A name in a folder. Dropped, it is gone, and the file with it.
 pub(super) struct Named(PathBuf);
 
-/// Every such name. Who holds this lock gives names or takes them away.
+/// Every such name. Names are given and removed under this lock.
 static NAMES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn names() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -140,7 +140,7 @@ impl Named {
 impl Drop for Named {
     fn drop(&mut self) {
         let mut names = names();
-        // One that was renamed is not ours any more.
+        // A file that was renamed stays.
         if names.contains(&self.0) {
             // Where it cannot be removed there is nothing more to be done about it.
             let _ = fs::remove_file(&self.0);
@@ -190,12 +190,12 @@ mod tests {
         names
     }
 
-    /// A file as on this system, or as where every file has a name.
-    fn start(folder: &Path, as_everywhere: bool) -> (Unfinished, File) {
-        if as_everywhere {
+    /// An unfinished file as on this system, or one with a name as on every system.
+    fn start(folder: &Path, is_named: bool) -> (Unfinished, File) {
+        if is_named {
             let (named, file) = Named::create(folder).unwrap();
-            let is_named = |name: &String| name.starts_with(".firsthit-");
-            assert!(names_in(folder).iter().any(is_named));
+            let is_temporary = |name: &String| name.starts_with(".firsthit-");
+            assert!(names_in(folder).iter().any(is_temporary));
             return (Unfinished::Named(named), file);
         }
         Unfinished::create(folder).unwrap()
@@ -204,8 +204,8 @@ mod tests {
     #[test]
     fn what_is_given_up_is_gone() {
         let folder = tempfile::tempdir().unwrap();
-        for as_everywhere in [false, true] {
-            drop(start(folder.path(), as_everywhere));
+        for is_named in [false, true] {
+            drop(start(folder.path(), is_named));
             assert_eq!(names_in(folder.path()), [""; 0]);
         }
         assert!(!names().iter().any(|name| name.starts_with(folder.path())));
@@ -216,17 +216,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a");
         for old in [None, Some("old")] {
-            for as_everywhere in [false, true] {
+            for is_named in [false, true] {
                 let _ = fs::remove_file(&target);
                 if let Some(old) = old {
                     fs::write(&target, old).unwrap();
                 }
-                let (unfinished, mut file) = start(folder.path(), as_everywhere);
+                let (unfinished, mut file) = start(folder.path(), is_named);
                 file.write_all(b"new").unwrap();
                 assert_eq!(fs::read_to_string(&target).ok().as_deref(), old);
                 unfinished.persist(file, &target).unwrap();
                 assert_eq!(fs::read_to_string(&target).unwrap(), "new");
-                assert_eq!(names_in(folder.path()), ["a"], "{as_everywhere}");
+                assert_eq!(names_in(folder.path()), ["a"], "{is_named}");
             }
         }
     }
@@ -235,12 +235,12 @@ mod tests {
     fn a_file_that_cannot_get_its_name_is_gone() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a");
-        for as_everywhere in [false, true] {
-            let (unfinished, file) = start(folder.path(), as_everywhere);
+        for is_named in [false, true] {
+            let (unfinished, file) = start(folder.path(), is_named);
             fs::create_dir(&target).unwrap();
             assert!(unfinished.persist(file, &target).is_err());
             fs::remove_dir(&target).unwrap();
-            assert_eq!(names_in(folder.path()), [""; 0], "{as_everywhere}");
+            assert_eq!(names_in(folder.path()), [""; 0], "{is_named}");
         }
     }
 }

@@ -16,7 +16,7 @@ pub(crate) struct WholeFile {
     path: PathBuf,
     target: PathBuf,
     unfinished: Unfinished,
-    /// The same as the output's.
+    /// The file of the output.
     file: File,
     failure: Failure,
 }
@@ -89,12 +89,12 @@ impl WholeFile {
             return Err(SaveError::write(&self.path, copy(failure)));
         }
         let persist = || {
-            on_disk(self.file.sync_all())?;
+            synced(self.file.sync_all())?;
             self.unfinished.persist(self.file, &self.target)?;
-            // Else the name might not outlive the power.
+            // Otherwise a power failure might undo the renaming.
             #[cfg(unix)]
             if let Ok(folder) = File::open(folder(&self.target)) {
-                on_disk(folder.sync_all())?;
+                synced(folder.sync_all())?;
             }
             Ok(())
         };
@@ -140,16 +140,16 @@ impl Seek for Output {
 
 /// The folder of a file.
 fn folder(file: &Path) -> &Path {
-    // A path of one word names none.
+    // A path without a folder lies in the current one.
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     }
 }
 
-/// What came of waiting for the disk: where there is none to wait for, it is well.
-fn on_disk(waited: io::Result<()>) -> io::Result<()> {
-    match waited {
+/// The result of a sync: a file system that cannot sync needs none.
+fn synced(result: io::Result<()>) -> io::Result<()> {
+    match result {
         Err(error)
             if matches!(
                 error.kind(),
@@ -158,7 +158,7 @@ fn on_disk(waited: io::Result<()>) -> io::Result<()> {
         {
             Ok(())
         }
-        waited => waited,
+        result => result,
     }
 }
 

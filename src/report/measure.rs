@@ -13,10 +13,10 @@ use crate::{Image, Kernel, Scene, Stage, Tracer};
 /// threads.
 const TIME: Duration = Duration::from_millis(1500);
 
-/// A median of fewer would be one of them.
+/// The fewest samples of which a median is taken.
 const MIN_SAMPLES: usize = 3;
 
-/// More change nothing.
+/// The most samples: more do not change the median.
 const MAX_SAMPLES: usize = 101;
 
 /// The middle of some measurements, and how far they spread.
@@ -73,10 +73,10 @@ pub(super) struct Filler {
 }
 
 impl Filler {
-    /// Tries every way and keeps the fastest.
+    /// Times every kind of stores, on one thread and on all, and keeps the fastest.
     pub(super) fn fastest(threads: usize, image: &mut Image) -> Result<Filler, TraceError> {
         let pool = Pool::new(threads).map_err(|source| TraceError::Threads { threads, source })?;
-        let ways = if threads == 1 {
+        let variants = if threads == 1 {
             &[false][..]
         } else {
             &[false, true]
@@ -90,18 +90,18 @@ impl Filler {
         let mut least = Duration::MAX;
         // In turn, so that a slow moment of the machine hits all of them.
         for _ in 0..9 {
-            for way in ways
+            for variant in variants
                 .iter()
                 .flat_map(|&shared| Stores::ALL.map(|stores| (stores, shared)))
             {
-                (filler.stores, filler.shared) = way;
-                // Twice: the first finds the caches as another way has left them.
+                (filler.stores, filler.shared) = variant;
+                // Twice: the first fill finds the caches that another variant has left.
                 filler.fill(image);
                 let start = Instant::now();
                 filler.fill(image);
                 let time = start.elapsed();
                 if time < least {
-                    (fastest, least) = (way, time);
+                    (fastest, least) = (variant, time);
                 }
             }
         }
@@ -163,7 +163,7 @@ pub(super) fn time(
     let samples = ms.len();
     let simd = match tracer.kernel() {
         Kernel::Exact | Kernel::Fast | Kernel::Double => tracer.simd().name(),
-        // These go pixel by pixel.
+        // These trace pixel by pixel.
         Kernel::Listing | Kernel::Reference => "none",
     };
     let spreads = [ms, fill_ms, ratios, retained].map(Spread::of);

@@ -37,7 +37,7 @@ impl Report {
                 Err(refusal) => {
                     times.rows.push(refused(row, 5 * threads.len()));
                     errors.rows.push(refused(row, 13));
-                    // One says enough.
+                    // One reason is enough.
                     reason = format!("refused: {refusal}\n");
                 }
             }

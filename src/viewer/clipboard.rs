@@ -4,8 +4,8 @@
 use raw_window_handle::{HasDisplayHandle as _, RawDisplayHandle};
 use winit::window::Window;
 
-/// Where copied text goes. It is there for others as long as this is, and longer where the desktop
-/// keeps it.
+/// The clipboard: other programs can paste its text as long as this lives, and longer where the
+/// desktop keeps it.
 pub(super) struct Clipboard {
     /// Under Wayland only the window that has the keyboard may copy, over its own connection.
     #[cfg(all(unix, not(target_vendor = "apple")))]
@@ -36,7 +36,7 @@ impl Clipboard {
         }
     }
 
-    /// Copies `text`. Nothing waits for anybody who takes it.
+    /// Copies `text`, without waiting for a program that pastes it.
     ///
     /// # Errors
     /// Where there is no clipboard, or another program keeps it.

@@ -125,7 +125,7 @@ impl Server {
     }
 }
 
-/// Every library of `needed` can be loaded.
+/// Checks that every library of `needed` can be loaded.
 fn require(server: &'static str, needed: &[Needed]) -> Result<(), ViewerError> {
     let missing: Vec<&Needed> = needed
         .iter()
@@ -145,10 +145,10 @@ fn require(server: &'static str, needed: &[Needed]) -> Result<(), ViewerError> {
     })
 }
 
-/// winit panics where this variable is not what it wants.
+/// winit panics where this variable is no scale factor.
 const SCALE_FACTOR: &str = "WINIT_X11_SCALE_FACTOR";
 
-/// The size of a logical pixel, if the environment gives one, is a size.
+/// Checks that the scale factor of the environment, if there is one, is one that winit takes.
 fn scale_factor() -> Result<(), String> {
     let Ok(text) = env::var(SCALE_FACTOR) else {
         return Ok(());
@@ -162,7 +162,7 @@ fn scale_factor() -> Result<(), String> {
     ))
 }
 
-/// Somebody listens where WAYLAND_DISPLAY says. An inherited WAYLAND_SOCKET is a connection
+/// Checks that a compositor listens at WAYLAND_DISPLAY. An inherited WAYLAND_SOCKET is a connection
 /// already.
 fn reach_wayland() -> Result<(), String> {
     let Some(display) = env::var_os("WAYLAND_DISPLAY").filter(|display| !display.is_empty()) else {

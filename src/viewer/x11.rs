@@ -47,7 +47,8 @@ impl Xlib {
                 close_display: *library.get(b"XCloseDisplay\0").ok()?,
             }
         };
-        // The pointers, and the handler that Xlib remembers, are good as long as the library stays.
+        // The pointers, and the handler that Xlib remembers, are valid as long as the library stays
+        // loaded.
         std::mem::forget(library);
         Some(xlib)
     }
@@ -111,7 +112,7 @@ impl Connection {
     /// The event loop alone would notice its death too late or not at all: winit panics where it
     /// meets it first, and Mesa's EGL then draws in software for ever.
     pub(super) fn watch(self) {
-        // Where the system has no thread left, the event loop is as good as it gets.
+        // Where the system has no thread left, only the event loop notices.
         let _ = thread::Builder::new()
             .name("X server".to_owned())
             .spawn(move || self.wait());
