@@ -15,6 +15,7 @@ mod error;
 mod frame_rate;
 mod hud;
 mod information;
+mod key_press;
 mod layout;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod library;
@@ -24,7 +25,6 @@ mod overlay;
 mod panel;
 mod playback;
 mod pointer;
-mod press;
 mod rect;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;

@@ -28,14 +28,14 @@ pub(super) enum Gesture {
 pub(super) struct Pointer {
     /// `None` where it is outside.
     place: Option<IVec2>,
-    press: Option<Press>,
+    press: Option<ButtonPress>,
     /// The fraction of a notch that was turned since the last whole one.
     notches: f64,
 }
 
 /// The left button is down.
 #[derive(Debug)]
-struct Press {
+struct ButtonPress {
     /// Where it went down.
     start: IVec2,
     /// The press has become a drag.
@@ -74,7 +74,7 @@ impl Pointer {
 
     /// The left button went down or up.
     pub(super) fn pressed(&mut self, down: bool) -> Option<Gesture> {
-        let press = self.place.filter(|_| down).map(|start| Press {
+        let press = self.place.filter(|_| down).map(|start| ButtonPress {
             start,
             drags: false,
         });

@@ -11,9 +11,9 @@ use winit::window::WindowId;
 
 use super::App;
 use crate::viewer::action::Action;
+use crate::viewer::key_press::KeyPress;
 use crate::viewer::menu::Menu;
 use crate::viewer::pointer::Gesture;
-use crate::viewer::press::Press;
 
 /// A notch of the wheel scrolls the panel by so many lines.
 const SCROLLED: isize = 3;
@@ -123,7 +123,7 @@ impl ApplicationHandler for App<'_> {
 
 impl App<'_> {
     fn pressed(&self, event: &KeyEvent) -> Option<Action> {
-        let press = Press {
+        let press = KeyPress {
             logical_key: &event.logical_key,
             physical_key: event.physical_key,
             location: event.location,

@@ -6,7 +6,7 @@ use super::action::{Action, BINDINGS, Binding};
 
 /// A key going down.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Press<'a> {
+pub(super) struct KeyPress<'a> {
     /// The key as the keyboard layout names it.
     pub(super) logical_key: &'a Key,
     /// The key by its place on the keyboard, whatever the layout.
@@ -18,7 +18,7 @@ pub(super) struct Press<'a> {
     pub(super) repeat: bool,
 }
 
-impl Press<'_> {
+impl KeyPress<'_> {
     /// The action it asks for, if any.
     ///
     /// The logical key decides where it is an ASCII letter, a digit or a key without a character:
@@ -117,7 +117,7 @@ mod tests {
         modifiers: ModifiersState,
     ) -> Option<Action> {
         let physical_key = PhysicalKey::Code(physical_key);
-        Press {
+        KeyPress {
             logical_key: &logical_key,
             physical_key,
             location,
@@ -275,7 +275,7 @@ mod tests {
                 let mut modifiers = ModifiersState::empty();
                 modifiers.set(ModifiersState::SHIFT, binding.shift == Some(true));
                 modifiers.set(ModifiersState::CONTROL, binding.ctrl);
-                Press {
+                KeyPress {
                     logical_key: &logical_key,
                     physical_key: PhysicalKey::Code(C::F35),
                     location: KeyLocation::Standard,
