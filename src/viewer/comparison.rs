@@ -48,7 +48,7 @@ pub(super) enum Reply {
 }
 
 /// The error view, while it is shown.
-pub(super) struct Errors {
+pub(super) struct ErrorView {
     /// Since when those of the present frame are to be shown.
     pub(super) since: Instant,
     /// The kernel whose picture was traced last for a comparison, and how far that is.
@@ -57,10 +57,10 @@ pub(super) struct Errors {
     pub(super) done: Option<Compared>,
 }
 
-impl Errors {
+impl ErrorView {
     /// None yet, and awaited from now on.
-    pub(super) fn since(now: Instant) -> Errors {
-        Errors {
+    pub(super) fn since(now: Instant) -> ErrorView {
+        ErrorView {
             since: now,
             tracing: None,
             done: None,
@@ -226,7 +226,7 @@ mod tests {
             alpha: 0.0,
             kernel: Kernel::Fast,
         };
-        let mut errors = Errors::since(Instant::now());
+        let mut errors = ErrorView::since(Instant::now());
         let mut begun = Vec::new();
         let compared = compare(frame, |kernel| {
             let progress = Progress::default();

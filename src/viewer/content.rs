@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::comparison::{Compared, Errors};
+use super::comparison::{Compared, ErrorView};
 use super::tracing::{Frame, Traced};
 use crate::{Image, Kernel, tracer};
 
@@ -22,7 +22,7 @@ pub(super) enum Content {
     /// The picture that was traced last.
     Picture(Picture),
     /// The errors of that picture; the picture itself until a comparison is done.
-    Errors(Picture, Errors),
+    Errors(Picture, ErrorView),
 }
 
 /// The picture that was traced last.
@@ -81,7 +81,7 @@ impl Content {
         }
     }
 
-    /// What there is to say about the picture that was traced last.
+    /// The metadata of the picture that was traced last.
     pub(super) fn traced(&self) -> Option<&Traced> {
         self.picture().map(|picture| &picture.traced)
     }
@@ -126,13 +126,13 @@ impl Content {
     /// A picture came at `now`, to be shown instead of the one before.
     pub(super) fn picture_came(&mut self, traced: Traced, samples: Arc<Image>, now: Instant) {
         let (texture, errors) = match std::mem::take(self) {
-            Content::Nothing { errors } => (Texture::Other, errors.then(|| Errors::since(now))),
+            Content::Nothing { errors } => (Texture::Other, errors.then(|| ErrorView::since(now))),
             Content::Picture(picture) => (picture.outdated(None), None),
             Content::Errors(picture, errors) => {
                 let is_same = picture.traced.frame == traced.frame;
                 let since = if is_same { errors.since } else { now };
                 let texture = picture.outdated(errors.done.as_ref());
-                (texture, Some(Errors { since, ..errors }))
+                (texture, Some(ErrorView { since, ..errors }))
             }
         };
         let picture = Picture {
@@ -152,7 +152,7 @@ impl Content {
             Content::Nothing { errors } => Content::Nothing { errors: !errors },
             Content::Picture(mut picture) => {
                 picture.texture = picture.outdated(None);
-                Content::Errors(picture, Errors::since(now))
+                Content::Errors(picture, ErrorView::since(now))
             }
             Content::Errors(mut picture, errors) => {
                 picture.texture = picture.outdated(errors.done.as_ref());

@@ -23,7 +23,7 @@ pub(super) struct Frame {
     pub(super) kernel: Kernel,
 }
 
-/// What there is to say about a traced picture.
+/// The metadata of a traced picture.
 #[derive(Clone)]
 pub(super) struct Traced {
     pub(super) frame: Frame,
