@@ -40,6 +40,12 @@ pub(crate) struct Bounded {
 }
 
 impl Bounded {
+    /// A number of which nothing is known.
+    pub(crate) const UNKNOWN: Bounded = Bounded {
+        value: 0.0,
+        error: f64::INFINITY,
+    };
+
     /// A number that the truth is not below.
     #[inline]
     pub(crate) fn at_least(self) -> f64 {

@@ -66,38 +66,28 @@ use super::in_doubt::InDoubt;
 use super::ladder::Lines;
 use super::pixel::quadrant;
 use super::progress::Progress;
-use crate::stage::Stage;
 use active::ActiveEdges;
-use edges::table::{EdgeTable, Edges};
+use grid::Columns;
 pub(super) use grid::ROWS;
-use grid::{Columns, Grid};
 pub(super) use precision::Precision;
-use prepare::builder::Builder;
-use prepare::floor::Floor;
-use prepare::solids::{Body, Solids};
+use prepare::prepared::Prepared;
+use prepare::solids::Body;
 use shade::certified::Shading;
 use shade::spans::SpanCache;
 use visibility::coverage::Coverage;
+use visibility::depth::settle;
+use visibility::resolve::visible;
 use visibility::visible::{DepthTests, Shown, Visible};
 pub(super) use write::history::RowHistory;
-use write::paint::{AllPaints, PaintNumber, Paints};
+use write::paint::PaintNumber;
 use write::row::Row;
 
 /// A frame, ready to be traced row by row.
 pub(super) struct RowTracer<'f, P> {
     /// Asked for what is in doubt.
     pixels: &'f P,
-    grid: Grid,
+    frame: Prepared<'f>,
     level: Level,
-    edges: EdgeTable<'f>,
-    direct: Solids<'f>,
-    floor: Option<Floor<'f>>,
-    paints: AllPaints<'f>,
-    /// How many spheres are shaded.
-    shaded_spheres: usize,
-    background: PaintNumber,
-    /// The picture of code 2-1, where that is the stage.
-    quadrants: Option<[PaintNumber; 4]>,
     precision: Precision,
 }
 
@@ -120,44 +110,20 @@ struct Shade {
 impl<'f, P: Lines> RowTracer<'f, P> {
     /// The frame that `pixels` are of.
     pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
-        let arena = &arena.frame;
-        let picture = pixels.bounded();
-        let grid = Grid::new(picture.size);
         let color = |decision| pixels.color(decision);
-        let mut parts = Builder {
-            grid,
-            arena,
-            edges: Edges::new(arena),
-            paints: Paints::new(&color, arena),
-            shaded_spheres: 0,
-        };
-        let is_quadrants = picture.stage == Stage::Image;
-        let background = parts.paints.of(Decision::Background);
-        let floor = picture.floor.as_ref();
-        let floor = floor.map(|floor| Floor::new(picture, floor, &mut parts));
-        let direct = Solids::new(picture, &picture.view, false, &mut parts);
-        let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
-        let quadrants = is_quadrants.then(|| [0, 1, 2, 3].map(quadrant));
         RowTracer {
             pixels,
-            grid,
+            frame: Prepared::new(pixels.bounded(), &color, &arena.frame),
             level,
-            edges: parts.edges.all(),
-            paints: parts.paints.all(),
-            shaded_spheres: parts.shaded_spheres,
-            direct,
-            floor,
-            background,
-            quadrants,
             precision,
         }
     }
 
     /// What tracing rows of this frame needs.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
-        scratch.active.begin(&self.edges, self.grid);
+        scratch.active.begin(&self.frame.edges, self.frame.grid);
         scratch.depth_tests.clear();
-        scratch.shade.cache.begin(self.shaded_spheres);
+        scratch.shade.cache.begin(self.frame.shaded_spheres);
     }
 
     /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
@@ -176,7 +142,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         let mut row = Row {
             level: self.level,
             precision: self.precision,
-            grid: self.grid,
+            grid: self.frame.grid,
             first: rows.start,
             number: rows.start,
             y: 0.0,
@@ -189,8 +155,8 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         let mut traced = 0;
         for number in rows {
             row.number = number;
-            row.y = self.grid.place(number);
-            match &self.quadrants {
+            row.y = self.frame.grid.place(number);
+            match &self.frame.quadrants {
                 Some(quadrants) => self.trace_quadrants(&mut row, quadrants),
                 None => self.trace_row(&mut row, scratch),
             }
@@ -206,18 +172,18 @@ impl<'f, P: Lines> RowTracer<'f, P> {
 
     /// Code 2-1, which knows two kinds of column.
     fn trace_quadrants<'r>(&'r self, row: &mut Row<'r>, quadrants: &[PaintNumber; 4]) {
-        let size = self.grid.size;
+        let size = self.frame.grid.size;
         let middle = (size / 2 + 1).min(size);
         for columns in [(0, middle), (middle, size)] {
             if columns.0 < columns.1 {
                 let paint = quadrants[usize::from(quadrant(columns.0, row.number, size))];
-                row.fill(columns, &self.paints[paint]);
+                row.fill(columns, &self.frame.paints[paint]);
             }
         }
     }
 
     fn trace_row<'r>(&'r self, row: &mut Row<'r>, scratch: &mut Scratch) {
-        let grid = self.grid;
+        let frame = &self.frame;
         let Scratch {
             active,
             depth_tests,
@@ -228,8 +194,8 @@ impl<'f, P: Lines> RowTracer<'f, P> {
             depth_tests.clear();
             active.forget();
         }
-        let look = |column: &Coverage| self.visible(column, depth_tests);
-        active.enter(row.number, &self.edges, self.level, grid, look);
+        let look = |column: &Coverage| visible(frame, column, depth_tests);
+        active.enter(row.number, &frame.edges, self.level, frame.grid, look);
         let mut from = 0;
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);
@@ -238,7 +204,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(row, (from, to), shows, shade),
                 Visible::First(_) => {
-                    self.settle(depth_tests, visible, row.y, (from, to), settled);
+                    settle(frame, depth_tests, visible, row.y, (from, to), settled);
                     for (columns, shows) in settled.drain(..) {
                         self.write(row, columns, shows, shade);
                     }
@@ -248,24 +214,17 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         }
     }
 
-    /// The solids, or those in the mirror. Without a mirror nothing asks for these.
-    fn solids(&self, mirrored: bool) -> &Solids<'f> {
-        let in_mirror = self
-            .floor
-            .as_ref()
-            .and_then(|floor| floor.mirrored.as_ref());
-        in_mirror.filter(|_| mirrored).unwrap_or(&self.direct)
-    }
-
     /// Columns that all show the same.
     fn write<'r>(&'r self, row: &mut Row<'r>, columns: Columns, shows: Shown, shade: &mut Shade) {
         match shows {
-            Shown::Paint(paint) => row.fill(columns, &self.paints[paint]),
+            Shown::Paint(paint) => row.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
-                if let Body::Sphere(shaded) = &self.solids(mirrored).solids[solid as usize].body {
-                    let paint = &self.paints[shaded.in_shadow];
+                if let Body::Sphere(shaded) =
+                    &self.frame.solids(mirrored).solids[solid as usize].body
+                {
+                    let paint = &self.frame.paints[shaded.in_shadow];
                     let Shade { cache, shading } = shade;
-                    let chord = cache.of(shaded, row.number, self.level, self.grid);
+                    let chord = cache.of(shaded, row.number, self.level, self.frame.grid);
                     row.shade(columns, shaded, &chord, paint, shading);
                     if !shading.doubts.is_empty() {
                         row.ask(shading.doubts.drain(..), self.pixels);

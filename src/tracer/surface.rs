@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::line::Line;
+use super::tetrahedron::HalfSpace;
 use super::vector::Vector;
 use crate::number::{Real, all};
 use crate::scene::Support;
@@ -57,6 +58,51 @@ impl<R: Real> Surface<R> {
         // asks for it.
         let [a, b] = self.along_sides(point);
         all([a, -a, b, -b].map(|coordinate| Ok((half_width - coordinate).sign()?.is_ge())))
+    }
+
+    /// The half-spaces that every point is in which the square keeps from the light: those whose
+    /// ray toward the light, which `to_light` is the way to and `climb` the sign of its rise, meets
+    /// it. They follow from [`Surface::is_ahead`], whose conditions are linear in the ray's origin.
+    ///
+    /// Where `climb` is not 0 they hold no other points. A level ray meets the square only from
+    /// points of its plane, and not from all of these.
+    pub(super) fn shadow(
+        &self,
+        to_light: Vector<R>,
+        climb: Ordering,
+    ) -> impl Iterator<Item = HalfSpace<R>> {
+        let (zero, one) = (R::exact(0.0), R::exact(1.0));
+        let up = Vector::new(zero, one, zero);
+        let at = Vector::new(zero, self.height, zero);
+        let before = |normal: Vector<R>, closed: bool| HalfSpace {
+            normal,
+            at,
+            closed,
+            border: Some(self.support),
+        };
+        let (bounds, sides) = match climb {
+            Ordering::Equal => ([Some(before(up, true)), Some(before(-up, true))], None),
+            Ordering::Greater => ([Some(before(-up, false)), None], Some(to_light)),
+            Ordering::Less => ([Some(before(up, false)), None], Some(-to_light)),
+        };
+        let sides = sides.into_iter().flat_map(move |l| {
+            // Across: the square's sides are where these vary by `half_width` from its middle.
+            let across = [
+                Vector::new(self.cos, zero, self.sin),
+                Vector::new(-self.sin, zero, self.cos),
+            ];
+            across
+                .into_iter()
+                .flat_map(|side| [side, -side])
+                .map(move |side| HalfSpace {
+                    // half − a(p), times |climb|, where p is moved along the light into the plane.
+                    normal: up * side.dot(l) - side * l.y,
+                    at: at + side * self.half_width,
+                    closed: true,
+                    border: None,
+                })
+        });
+        bounds.into_iter().flatten().chain(sides)
     }
 
     /// Whether the ray meets the square at some t > 0, from either side; one that lies in its

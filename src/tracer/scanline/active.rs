@@ -9,7 +9,7 @@ use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
 
 use crate::tracer::scanline::edges::table::EdgeTable;
 use crate::tracer::scanline::grid::{Grid, ROWS};
-use crate::tracer::scanline::visibility::coverage::Coverage;
+use crate::tracer::scanline::visibility::coverage::{Cover, Coverage};
 use crate::tracer::scanline::visibility::visible::{Packed, Visible};
 
 /// After so many exchanges in one row the next rows are sorted without asking whether they must be.
@@ -47,14 +47,13 @@ impl Crossing {
         self.0 as usize / 4
     }
 
-    /// Whether the region certainly covers the columns after it.
-    fn is_held(self) -> bool {
-        self.0 % 4 == 1
-    }
-
-    /// Whether it is unknown if the region covers them.
-    fn is_unknown(self) -> bool {
-        self.0.is_multiple_of(2)
+    /// How the region covers the columns after it.
+    fn cover(self) -> Cover {
+        match self.0 % 4 {
+            0 | 2 => Cover::Unknown,
+            1 => Cover::Certainly,
+            _ => Cover::Not,
+        }
     }
 
     /// 1 where columns begin, −1 where they end.
@@ -100,7 +99,7 @@ pub(crate) struct ActiveEdges {
     /// are one. The first is none.
     spans: Vec<Span>,
     has_spans: bool,
-    /// The places in `visible(` where nobody has looked.
+    /// The places in `visible` where nobody has looked.
     open: Vec<usize>,
     end: Crossing,
     /// Edges whose crossings are not, or no longer, those in `crossings`.
@@ -108,7 +107,7 @@ pub(crate) struct ActiveEdges {
     is_changed: Vec<bool>,
     /// Their new crossings, by their places in the first of the rows.
     arrivals: Vec<(u32, Crossing)>,
-    /// Where `crossings` and `visible(` are made anew.
+    /// Where `crossings` and `visible` are made anew.
     spare: Changed,
 }
 
@@ -126,7 +125,7 @@ impl ActiveEdges {
         self.crosses.clear();
         self.crosses.resize(count, Crosses::No);
         self.crossing.clear();
-        self.crossing.resize(edges.kinds.len(), 0);
+        self.crossing.resize(edges.words(), 0);
         self.places.resize(4 * count + 4, [0; ROWS]);
         // The end of every row is a crossing of no edge.
         self.end = Crossing(4 * count as u32);
@@ -284,13 +283,12 @@ impl ActiveEdges {
         for gap in 0..self.visible.len() {
             let to = self.places[self.crossing(gap).0 as usize][row];
             if self.visible[gap] == Packed::OPEN && from < to {
-                self.coverage.look(edges);
                 self.visible[gap] = Packed::new(look(&self.coverage));
             }
             from = to;
             if let Some(crossing) = self.crossings.get(gap) {
-                let (held, unknown) = (crossing.is_held(), crossing.is_unknown());
-                self.coverage.cross(crossing.edge(), held, unknown);
+                self.coverage
+                    .cross(edges, crossing.edge(), crossing.cover());
             }
         }
     }

@@ -6,7 +6,7 @@
 use fearless_simd::Level;
 
 use super::visibility::visible::{DepthTests, Shown, Visible};
-use super::{Columns, Precision, RowTracer, Scratch};
+use super::{Columns, Precision, RowTracer, Scratch, settle, visible};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
@@ -55,8 +55,9 @@ fn spans<P: Lines>(
         depth_tests,
         ..
     } = scratch;
-    active.enter(row, &tracer.edges, tracer.level, tracer.grid, |coverage| {
-        tracer.visible(coverage, depth_tests)
+    let frame = &tracer.frame;
+    active.enter(row, &frame.edges, tracer.level, frame.grid, |coverage| {
+        visible(frame, coverage, depth_tests)
     });
     let mut spans: Vec<(u32, Visible)> = Vec::new();
     let mut from = 0;
@@ -131,11 +132,18 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
         tracer.begin(&mut scratch);
         let (mut told, mut asked) = (0, 0);
         for row in 0..size {
-            let y = tracer.grid.place(row);
+            let y = tracer.frame.grid.place(row);
             let mut from = 0;
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut settled: Vec<(Columns, Shown)> = Vec::new();
-                tracer.settle(&scratch.depth_tests, visible, y, (from, to), &mut settled);
+                settle(
+                    &tracer.frame,
+                    &scratch.depth_tests,
+                    visible,
+                    y,
+                    (from, to),
+                    &mut settled,
+                );
                 for ((first, end), shown) in settled {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);
@@ -144,7 +152,9 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                                 asked += 1;
                                 continue;
                             }
-                            (Shown::Paint(paint), _) => tracer.paints[paint].decision == decision,
+                            (Shown::Paint(paint), _) => {
+                                tracer.frame.paints[paint].decision == decision
+                            }
                             (Shown::Sphere { mirrored, solid }, Decision::Solid(seen)) => {
                                 !mirrored && u32::from(seen.solid) == solid
                             }

@@ -38,6 +38,17 @@ struct Root {
 }
 
 impl HalfPlane {
+    /// One of which nothing is known.
+    pub(crate) const UNKNOWN: HalfPlane = HalfPlane {
+        constant: Bounded::UNKNOWN,
+        column: Bounded::UNKNOWN,
+        row: Bounded::UNKNOWN,
+        closed: false,
+        crossing: Crossing::Never {
+            error: f64::INFINITY,
+        },
+    };
+
     pub(crate) fn new(
         constant: Bounded,
         column: Bounded,

@@ -34,14 +34,17 @@ pub(crate) struct Edges<'f> {
 pub(crate) struct EdgeTable<'f> {
     pub(crate) shapes: &'f [Region<'f>],
     pub(crate) of: &'f [Edge],
-    /// What they are of, 64 at a time.
-    pub(crate) kinds: &'f [Kinds],
     /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where
     /// the last are fewer, the others cross none.
     rows: &'f [[[u32; 64]; 2]],
 }
 
 impl EdgeTable<'_> {
+    /// How many times 64 edges there are.
+    pub(crate) fn words(&self) -> usize {
+        self.rows.len()
+    }
+
     /// Which of 64 edges can cross any of the rows from `first` on, bit by bit.
     #[inline(always)]
     pub(crate) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
@@ -54,33 +57,6 @@ impl EdgeTable<'_> {
             reaching |= is_reaching.to_bitmask() << bit;
         }
         reaching
-    }
-}
-
-/// What edges are of, bit by bit.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Kinds {
-    pub(crate) surface: u64,
-    pub(crate) shadows: u64,
-    pub(crate) direct: u64,
-    pub(crate) mirrored: u64,
-}
-
-impl Kinds {
-    /// Up to 64 edges.
-    fn of(edges: &[Edge]) -> Kinds {
-        let mut kinds = Kinds::default();
-        for (bit, edge) in edges.iter().enumerate() {
-            let kind = match edge {
-                Edge::Surface => &mut kinds.surface,
-                Edge::ShadowOnSurface => &mut kinds.shadows,
-                Edge::Direct(_) => &mut kinds.direct,
-                Edge::Mirrored(_) => &mut kinds.mirrored,
-                Edge::Detail => continue,
-            };
-            *kind |= 1 << bit;
-        }
-        kinds
     }
 }
 
@@ -113,7 +89,6 @@ impl<'f> Edges<'f> {
     }
 
     pub(crate) fn all(self) -> EdgeTable<'f> {
-        let kinds = self.of.chunks(64).map(Kinds::of);
         let rows = self.shapes.chunks(64).map(|shapes| {
             let mut rows = [[0; 64]; 2];
             for (bit, shape) in shapes.iter().enumerate() {
@@ -122,7 +97,6 @@ impl<'f> Edges<'f> {
             rows
         });
         EdgeTable {
-            kinds: collect(self.arena, kinds),
             rows: collect(self.arena, rows),
             shapes: self.shapes.into_bump_slice(),
             of: self.of.into_bump_slice(),

@@ -8,7 +8,7 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::Edge;
-use crate::tracer::scanline::prepare::builder::Builder;
+use crate::tracer::scanline::prepare::prepared::Builder;
 use crate::tracer::scanline::prepare::solids::{Solids, shadows_on};
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::write::paint::PaintNumber;

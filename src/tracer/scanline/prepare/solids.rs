@@ -1,6 +1,7 @@
 //! The solids as a frame's rows cross them: seen directly, or in the mirror.
 
 use std::cell::LazyCell;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use bumpalo::Bump;
@@ -19,12 +20,12 @@ use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::Edge;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::scanline::prepare::builder::Builder;
+use crate::tracer::scanline::prepare::prepared::Builder;
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::tetrahedron::HalfSpace;
@@ -52,8 +53,6 @@ pub(crate) enum Body<'f> {
     Flat(PaintNumber),
     Sphere(&'f ShadedSphere<'f>),
     Facets(&'f [Facet], &'f [Pair]),
-    /// Each is to be asked for.
-    Unknown,
 }
 
 /// A face that eye rays enter.
@@ -127,15 +126,20 @@ impl<'f> Solids<'f> {
         };
         let facts = scene.facts();
         let rising = -scene.light().direction.y;
-        // Whether the surface may stand between a point of a solid and the light.
-        let surface_shades = |solid: usize| {
-            picture.floor.is_some()
-                && !match facts.sides[solid] {
-                    Side::Above => rising > 0.0,
-                    Side::Below => rising < 0.0,
-                    Side::Across => false,
-                }
+        // The surface, where it may stand between a point of a solid and the light.
+        let shading_surface = |solid: usize| {
+            let shades = match facts.sides[solid] {
+                Side::Above => rising <= 0.0,
+                Side::Below => rising >= 0.0,
+                Side::Across => true,
+            };
+            let floor = picture.floor.as_ref().filter(|_| shades);
+            floor.map(|floor| &floor.surface)
         };
+        // In the mirror light comes from below where it comes from above.
+        let climb = if mirrored { -rising } else { rising };
+        let climb = climb.partial_cmp(&0.0).unwrap_or(Ordering::Equal);
+        let to_light = view.shading.to_light.vector;
         let reflectance = match &picture.floor {
             Some(floor) if mirrored => floor.mirror.as_ref().map(|mirror| mirror.reflectance),
             _ => None,
@@ -152,15 +156,21 @@ impl<'f> Solids<'f> {
                 let mut paint = |in_shadow| parts.paints.of(decision(index, None, in_shadow));
                 let body = if stage == Stage::Spheres {
                     Body::Flat(paint(false))
-                } else if surface_shades(index) {
-                    Body::Unknown
                 } else {
                     let own = picture.solid_color(index);
                     let own = reflectance.map_or(own, |reflectance| own * reflectance);
                     let row_sphere = RowSphere::new(sphere, &ellipse, &lighting, own, shadows);
                     let casters = if shadows {
-                        let casters = &facts.casters[index];
-                        casters_on(&row_sphere, index, view, &lighting, casters, arena)
+                        let solids = &facts.casters[index];
+                        let solids = casters_on(&row_sphere, index, view, &lighting, solids, arena);
+                        let surface = shading_surface(index).map(|surface| {
+                            let shadow = surface.shadow(to_light, climb);
+                            let forms =
+                                shadow.map(|half_space| row_sphere.inside(&half_space, &lighting));
+                            let unknown = climb.is_eq().then_some(LinearForm::UNKNOWN);
+                            Caster::Polyhedron(collect(arena, forms.chain(unknown)))
+                        });
+                        collect(arena, solids.chain(surface))
                     } else {
                         &[]
                     };
@@ -203,6 +213,15 @@ impl<'f> Solids<'f> {
                     };
                     let casters = casters.iter().copied();
                     let thrown = shadows_on(&plane, view, casters, |_| false, grid, arena);
+                    let surface = shading_surface(index).filter(|_| !turned_away);
+                    let surface = surface.map(|surface| {
+                        let shadow = surface.shadow(to_light, climb);
+                        let planes =
+                            shadow.map(|half_space| HalfPlane::of(&half_space, &plane, grid));
+                        let unknown = climb.is_eq().then_some(HalfPlane::UNKNOWN);
+                        Region::new(collect(arena, planes.chain(unknown)), None, grid)
+                    });
+                    let thrown = thrown.chain(surface);
                     let mut paint =
                         |in_shadow| parts.paints.of(decision(index, Some(face), in_shadow));
                     facets.push(Facet {
@@ -222,11 +241,7 @@ impl<'f> Solids<'f> {
                     })
                 });
                 let pairs = collect(arena, pairs);
-                let body = if surface_shades(index) {
-                    Body::Unknown
-                } else {
-                    Body::Facets(facets.into_bump_slice(), pairs)
-                };
+                let body = Body::Facets(facets.into_bump_slice(), pairs);
                 let side = facts.sides[index];
                 if let Some(edge) = edge(solids.len(), side) {
                     parts.edges.add(outline.within(rows), edge);
@@ -420,11 +435,11 @@ fn casters_on<'f>(
     lighting: &Lighting,
     casters: &[u16],
     arena: &'f Bump,
-) -> &'f [Caster<'f>] {
+) -> impl Iterator<Item = Caster<'f>> {
     let to_light = view.shading.to_light;
     let own = view.spheres[index].support;
     let beside = LazyCell::new(|| row_sphere.beside(lighting));
-    let casters = casters.iter().filter_map(|&caster| {
+    casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
             // A ray leaves its own sphere, also where that is listed twice.
@@ -443,6 +458,5 @@ fn casters_on<'f>(
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }
-    });
-    collect(arena, casters)
+    })
 }

@@ -41,6 +41,17 @@ pub(crate) struct LinearForm {
 }
 
 impl LinearForm {
+    /// One of which nothing is known; computed without its error it is negative.
+    pub(crate) const UNKNOWN: LinearForm = LinearForm {
+        constant: -1.0,
+        across: 0.0,
+        off: 0.0,
+        out: 0.0,
+        error: f64::INFINITY,
+        magnitude: f64::INFINITY,
+        is_concave: None,
+    };
+
     /// The vector that n is multiplied with, in the axes of q, m and s.
     pub(crate) fn vector(&self) -> [f64; 3] {
         [self.across, self.off, self.out]

@@ -1,25 +1,47 @@
 //! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! A crossing changes two bits of it; what the bits mean is found out for spans whose visibility is
-//! not cached.
+//! It follows the crossings of a row from the left to the right. So what it holds is as long as
+//! the list of what covers one column, and not as the list of all edges.
 
 use crate::tracer::scanline::edges::table::{Edge, EdgeTable};
 
-/// Edges of one kind: whether any of them holds a column, and of which this is not known.
-#[derive(Clone, Copy, Default)]
-struct Any {
-    held: bool,
-    unknown: bool,
+/// How a region covers the present column.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Cover {
+    #[default]
+    Not,
+    Certainly,
+    Unknown,
 }
 
-impl Any {
-    fn add(&mut self, kind: u64, (held, unknown): (u64, u64)) {
-        self.held |= held & kind != 0;
-        self.unknown |= unknown & kind != 0;
+/// How many regions of one kind cover the column, and of how many this is unknown.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    certain: u32,
+    unknown: u32,
+}
+
+impl Tally {
+    fn count(&mut self, cover: Cover) -> Option<&mut u32> {
+        match cover {
+            Cover::Not => None,
+            Cover::Certainly => Some(&mut self.certain),
+            Cover::Unknown => Some(&mut self.unknown),
+        }
     }
 
-    fn known(self) -> Option<bool> {
-        (self.held || !self.unknown).then_some(self.held)
+    fn change(&mut self, from: Cover, to: Cover) {
+        if let Some(count) = self.count(from) {
+            *count -= 1;
+        }
+        if let Some(count) = self.count(to) {
+            *count += 1;
+        }
+    }
+
+    /// Whether any of the regions covers the column, where that is known.
+    fn any(self) -> Option<bool> {
+        (self.certain > 0 || self.unknown == 0).then_some(self.certain > 0)
     }
 }
 
@@ -27,88 +49,81 @@ impl Any {
 #[derive(Default)]
 pub(crate) struct Met {
     solids: Vec<usize>,
-    any: Any,
+    tally: Tally,
 }
 
 impl Met {
     /// The solids, if they are known.
     pub(crate) fn known(&self) -> Option<&[usize]> {
-        (!self.any.unknown).then_some(&self.solids)
+        (self.tally.unknown == 0).then_some(&self.solids)
     }
 
     fn clear(&mut self) {
         self.solids.clear();
-        self.any = Any::default();
+        self.tally = Tally::default();
+    }
+
+    fn change(&mut self, solid: usize, from: Cover, to: Cover) {
+        self.tally.change(from, to);
+        match (self.solids.binary_search(&solid), to) {
+            (Err(place), Cover::Certainly) => self.solids.insert(place, solid),
+            (Ok(place), Cover::Not | Cover::Unknown) => {
+                self.solids.remove(place);
+            }
+            _ => {}
+        }
     }
 }
 
 /// The regions that cover the present column.
 #[derive(Default)]
 pub(crate) struct Coverage {
-    /// For each edge a bit whether its region certainly covers the column, and one whether that is
-    /// unknown; 64 edges a word.
-    held: Vec<(u64, u64)>,
+    /// By the number of the edge.
+    covers: Vec<Cover>,
     pub(crate) direct: Met,
     pub(crate) mirrored: Met,
-    surface: Any,
-    shadows: Any,
+    surface: Tally,
+    shadows: Tally,
 }
 
 impl Coverage {
-    /// Goes to where none of a frame's edges holds it.
+    /// Goes to where none of a frame's regions covers the column.
     pub(crate) fn clear(&mut self, edges: &EdgeTable<'_>) {
-        self.held.clear();
-        self.held.resize(edges.kinds.len(), (0, 0));
-    }
-
-    /// Goes across an edge: whether that holds it then, and whether this is unknown.
-    pub(crate) fn cross(&mut self, edge: usize, is_held: bool, is_unknown: bool) {
-        let (held, unknown) = &mut self.held[edge / 64];
-        let bit = edge % 64;
-        *held = *held & !(1 << bit) | u64::from(is_held) << bit;
-        *unknown = *unknown & !(1 << bit) | u64::from(is_unknown) << bit;
-    }
-
-    /// Finds out what it meets.
-    pub(crate) fn look(&mut self, edges: &EdgeTable<'_>) {
+        self.covers.clear();
+        self.covers.resize(edges.of.len(), Cover::Not);
         self.direct.clear();
         self.mirrored.clear();
-        (self.surface, self.shadows) = (Any::default(), Any::default());
-        for (word, (kinds, &bits)) in edges.kinds.iter().zip(&self.held).enumerate() {
-            if bits == (0, 0) {
-                continue;
-            }
-            self.surface.add(kinds.surface, bits);
-            self.shadows.add(kinds.shadows, bits);
-            self.direct.any.add(kinds.direct, bits);
-            self.mirrored.any.add(kinds.mirrored, bits);
-            // Edges of solids are numbered in the order of these.
-            let mut solids = bits.0 & (kinds.direct | kinds.mirrored);
-            while solids != 0 {
-                match edges.of[64 * word + solids.trailing_zeros() as usize] {
-                    Edge::Direct(solid) => self.direct.solids.push(solid),
-                    Edge::Mirrored(solid) => self.mirrored.solids.push(solid),
-                    Edge::Surface | Edge::ShadowOnSurface | Edge::Detail => {}
-                }
-                solids &= solids - 1;
-            }
+        (self.surface, self.shadows) = (Tally::default(), Tally::default());
+    }
+
+    /// Goes across an edge: how its region covers the column then.
+    pub(crate) fn cross(&mut self, edges: &EdgeTable<'_>, edge: usize, to: Cover) {
+        let from = std::mem::replace(&mut self.covers[edge], to);
+        match edges.of[edge] {
+            Edge::Surface => self.surface.change(from, to),
+            Edge::ShadowOnSurface => self.shadows.change(from, to),
+            Edge::Direct(solid) => self.direct.change(solid, from, to),
+            Edge::Mirrored(solid) => self.mirrored.change(solid, from, to),
+            Edge::Detail => {}
         }
     }
 
-    /// Whether it meets the surface.
+    /// Whether the column meets the surface.
     pub(crate) fn surface(&self) -> Option<bool> {
-        self.surface.known()
+        self.surface.any()
     }
 
     /// Whether the surface is in shadow there.
     pub(crate) fn surface_in_shadow(&self) -> Option<bool> {
-        self.shadows.known()
+        self.shadows.any()
     }
 
-    /// Whether it is one of an edge's.
+    /// Whether an edge's region covers the column.
     pub(crate) fn holds(&self, edge: usize) -> Option<bool> {
-        let (held, unknown) = self.held[edge / 64];
-        let is = |bits: u64| bits >> (edge % 64) & 1 == 1;
-        (!is(unknown)).then_some(is(held))
+        match self.covers[edge] {
+            Cover::Not => Some(false),
+            Cover::Certainly => Some(true),
+            Cover::Unknown => None,
+        }
     }
 }

@@ -1,84 +1,85 @@
 //! Visibility: from the regions that cover a span to what it shows.
 
 use crate::scene::Side;
-use crate::tracer::ladder::Lines;
-use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::floor::Floor;
+use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{DepthTests, Shown, Visible};
 
-impl<P: Lines> RowTracer<'_, P> {
-    /// What is visible in a span with this coverage.
-    pub(crate) fn visible(&self, coverage: &Coverage, depth_tests: &mut DepthTests) -> Visible {
-        let Some(met) = coverage.direct.known() else {
-            return Visible::UNKNOWN;
-        };
-        // What is above the surface hides it.
-        let hides = |&solid: &usize| self.direct.solids[solid].side == Side::Above;
-        let on_floor = if met.iter().any(hides) {
-            Some(false)
-        } else {
-            coverage.surface()
-        };
-        let floor = match on_floor {
-            Some(on_floor) => self.floor.as_ref().filter(|_| on_floor),
-            None => return Visible::UNKNOWN,
-        };
-        match (met, floor) {
-            ([], None) => Visible::Only(Shown::Paint(self.background)),
-            ([], Some(floor)) => self.visible_surface(floor, coverage, depth_tests),
-            (_, floor) => {
-                if floor.is_none()
-                    && let Some(solid) = self.direct.separation.first(met)
-                {
-                    return Visible::Only(solid_in(&self.direct, solid, coverage));
-                }
-                let rest = match floor {
-                    Some(floor) => self.visible_surface(floor, coverage, depth_tests),
-                    None => Visible::Only(Shown::Paint(self.background)),
-                };
-                let shows = met
-                    .iter()
-                    .map(|&solid| (solid, solid_in(&self.direct, solid, coverage)));
-                depth_tests.defer(false, shows, floor.is_some(), rest)
+/// What is visible in a span with this coverage. What rows have to decide goes to `depth_tests`.
+pub(crate) fn visible(
+    frame: &Prepared<'_>,
+    coverage: &Coverage,
+    depth_tests: &mut DepthTests,
+) -> Visible {
+    let direct = frame.solids(false);
+    let Some(met) = coverage.direct.known() else {
+        return Visible::UNKNOWN;
+    };
+    // What is above the surface hides it.
+    let hides = |&solid: &usize| direct.solids[solid].side == Side::Above;
+    let on_floor = if met.iter().any(hides) {
+        Some(false)
+    } else {
+        coverage.surface()
+    };
+    let floor = match on_floor {
+        Some(on_floor) => frame.floor.as_ref().filter(|_| on_floor),
+        None => return Visible::UNKNOWN,
+    };
+    match (met, floor) {
+        ([], None) => Visible::Only(Shown::Paint(frame.background)),
+        ([], Some(floor)) => visible_surface(floor, coverage, depth_tests),
+        (_, floor) => {
+            if floor.is_none()
+                && let Some(solid) = direct.separation.first(met)
+            {
+                return Visible::Only(solid_in(direct, solid, coverage));
             }
+            let rest = match floor {
+                Some(floor) => visible_surface(floor, coverage, depth_tests),
+                None => Visible::Only(Shown::Paint(frame.background)),
+            };
+            let shows = met
+                .iter()
+                .map(|&solid| (solid, solid_in(direct, solid, coverage)));
+            depth_tests.defer(false, shows, floor.is_some(), rest)
         }
     }
+}
 
-    /// The same where the surface is met, and no solid in front of it.
-    fn visible_surface(
-        &self,
-        floor: &Floor<'_>,
-        coverage: &Coverage,
-        depth_tests: &mut DepthTests,
-    ) -> Visible {
-        let itself = Visible::Only(Shown::Paint(floor.paint));
-        let mirrored = match (coverage.surface_in_shadow(), &floor.mirrored) {
-            (Some(true), _) => return Visible::Only(Shown::Paint(floor.in_shadow)),
-            (None, _) => return Visible::UNKNOWN,
-            (Some(false), None) => return itself,
-            (Some(false), Some(mirrored)) => mirrored,
-        };
-        let Some(met) = coverage.mirrored.known() else {
-            return Visible::UNKNOWN;
-        };
-        // A solid that goes through the surface may be met below it, where nothing is mirrored.
-        let goes_through = |&solid: &usize| mirrored.solids[solid].side != Side::Above;
-        if met.is_empty() {
-            return itself;
-        }
-        if met.iter().any(goes_through) {
-            return Visible::UNKNOWN;
-        }
-        if let Some(solid) = mirrored.separation.first(met) {
-            return Visible::Only(solid_in(mirrored, solid, coverage));
-        }
-        let shows = met
-            .iter()
-            .map(|&solid| (solid, solid_in(mirrored, solid, coverage)));
-        depth_tests.defer(true, shows, false, itself)
+/// The same where the surface is met, and no solid in front of it.
+fn visible_surface(
+    floor: &Floor<'_>,
+    coverage: &Coverage,
+    depth_tests: &mut DepthTests,
+) -> Visible {
+    let itself = Visible::Only(Shown::Paint(floor.paint));
+    let mirrored = match (coverage.surface_in_shadow(), &floor.mirrored) {
+        (Some(true), _) => return Visible::Only(Shown::Paint(floor.in_shadow)),
+        (None, _) => return Visible::UNKNOWN,
+        (Some(false), None) => return itself,
+        (Some(false), Some(mirrored)) => mirrored,
+    };
+    let Some(met) = coverage.mirrored.known() else {
+        return Visible::UNKNOWN;
+    };
+    if met.is_empty() {
+        return itself;
     }
+    // A solid that goes through the surface may be met before the surface, where its part
+    // below would be mirrored: the test of depth decides.
+    let goes_through = |&solid: &usize| mirrored.solids[solid].side == Side::Across;
+    if !met.iter().any(goes_through)
+        && let Some(solid) = mirrored.separation.first(met)
+    {
+        return Visible::Only(solid_in(mirrored, solid, coverage));
+    }
+    let shows = met
+        .iter()
+        .map(|&solid| (solid, solid_in(mirrored, solid, coverage)));
+    depth_tests.defer(true, shows, false, itself)
 }
 
 /// What a column shows where it sees a solid.
@@ -93,7 +94,6 @@ fn solid_in(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Shown {
             Some(last) => facet_in(&facets[last], coverage),
             None => Shown::Unknown,
         },
-        Body::Unknown => Shown::Unknown,
     }
 }
 

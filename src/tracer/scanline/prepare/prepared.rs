@@ -1,0 +1,79 @@
+//! A frame as its rows are traced from: plain data, and all that the stages know of it.
+
+use bumpalo::Bump;
+
+use crate::number::Bounded;
+use crate::stage::Stage;
+use crate::tracer::decision::Decision;
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::table::{EdgeTable, Edges};
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::floor::Floor;
+use crate::tracer::scanline::prepare::solids::Solids;
+use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
+
+/// A frame, prepared for its rows.
+pub(crate) struct Prepared<'f> {
+    pub(crate) grid: Grid,
+    pub(crate) edges: EdgeTable<'f>,
+    pub(crate) paints: AllPaints<'f>,
+    pub(crate) background: PaintNumber,
+    pub(crate) floor: Option<Floor<'f>>,
+    direct: Solids<'f>,
+    /// How many spheres are shaded.
+    pub(crate) shaded_spheres: usize,
+    /// The picture of code 2-1, where that is the stage.
+    pub(crate) quadrants: Option<[PaintNumber; 4]>,
+}
+
+/// The parts of a frame that all of it adds to, while it is prepared.
+pub(crate) struct Builder<'f, 'c> {
+    pub(crate) grid: Grid,
+    pub(crate) arena: &'f Bump,
+    pub(crate) edges: Edges<'f>,
+    pub(crate) paints: Paints<'f, 'c>,
+    pub(crate) shaded_spheres: usize,
+}
+
+impl<'f> Prepared<'f> {
+    /// `color` tells what decisions look like.
+    pub(crate) fn new(
+        picture: &Picture<'_, Bounded>,
+        color: &dyn Fn(Decision) -> [f32; 3],
+        arena: &'f Bump,
+    ) -> Self {
+        let grid = Grid::new(picture.size);
+        let mut parts = Builder {
+            grid,
+            arena,
+            edges: Edges::new(arena),
+            paints: Paints::new(color, arena),
+            shaded_spheres: 0,
+        };
+        let background = parts.paints.of(Decision::Background);
+        let floor = picture.floor.as_ref();
+        let floor = floor.map(|floor| Floor::new(picture, floor, &mut parts));
+        let direct = Solids::new(picture, &picture.view, false, &mut parts);
+        let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
+        let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
+        Prepared {
+            grid,
+            edges: parts.edges.all(),
+            paints: parts.paints.all(),
+            background,
+            floor,
+            direct,
+            shaded_spheres: parts.shaded_spheres,
+            quadrants,
+        }
+    }
+
+    /// The solids, or those in the mirror. Without a mirror nothing asks for these.
+    pub(crate) fn solids(&self, mirrored: bool) -> &Solids<'f> {
+        let in_mirror = self
+            .floor
+            .as_ref()
+            .and_then(|floor| floor.mirrored.as_ref());
+        in_mirror.filter(|_| mirrored).unwrap_or(&self.direct)
+    }
+}
