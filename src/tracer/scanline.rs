@@ -75,7 +75,7 @@ use prepare::solids::Body;
 use shade::certified::Shading;
 use shade::spans::SpanCache;
 use visibility::coverage::Coverage;
-use visibility::depth::settle;
+use visibility::depth::Settled;
 use visibility::resolve::visible;
 use visibility::visible::{DepthTests, Shown, Visible};
 pub(super) use write::history::RowHistory;
@@ -96,7 +96,7 @@ pub(super) struct RowTracer<'f, P> {
 pub(super) struct Scratch {
     active: ActiveEdges,
     depth_tests: DepthTests,
-    settled: Vec<(Columns, Shown)>,
+    settled: Settled,
     shade: Shade,
 }
 
@@ -204,8 +204,9 @@ impl<'f, P: Lines> RowTracer<'f, P> {
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(row, (from, to), shows, shade),
                 Visible::First(_) => {
-                    settle(frame, depth_tests, visible, row.y, (from, to), settled);
-                    for (columns, shows) in settled.drain(..) {
+                    let columns = (from, to);
+                    let parts = settled.settle(frame, depth_tests, visible, row.y, columns);
+                    for (columns, shows) in parts {
                         self.write(row, columns, shows, shade);
                     }
                 }

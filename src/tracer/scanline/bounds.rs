@@ -172,16 +172,9 @@ impl Case<'_> {
             let x = self.grid.place(first);
             let hits = hits(simd, row_sphere, m, x);
             let facing = value::<S>(&light, hits.q, hits.s);
-            let [deep, shallow] = row_sphere.errors.map(|error| {
-                lit(
-                    simd,
-                    row_sphere,
-                    m,
-                    x,
-                    facing,
-                    &ambient(simd, row_sphere, error),
-                    true,
-                )
+            let [deep, shallow] = [0, 1].map(|zone| {
+                let ambient = ambient(simd, row_sphere, zone);
+                lit(simd, row_sphere, m, x, facing, &ambient, Some(zone))
             });
             let forms = self
                 .forms

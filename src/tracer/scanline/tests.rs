@@ -6,7 +6,7 @@
 use fearless_simd::Level;
 
 use super::visibility::visible::{DepthTests, Shown, Visible};
-use super::{Columns, Precision, RowTracer, Scratch, settle, visible};
+use super::{Precision, RowTracer, Scratch, Settled, visible};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
@@ -84,7 +84,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
             let test = tests.test(number);
             let solids = test.solids.iter();
             let solids: Vec<String> = solids
-                .map(|&(solid, shows)| format!("{solid}: {}", shown(shows)))
+                .map(|solid| format!("{} {:?}: {}", solid.solid, solid.facet, shown(solid.shown)))
                 .collect();
             let rest = words(test.rest, tests);
             format!("{} {} {solids:?} or {rest}", test.mirrored, test.surface)
@@ -135,16 +135,9 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             let y = tracer.frame.grid.place(row);
             let mut from = 0;
             for (to, visible) in spans(tracer, row, &mut scratch) {
-                let mut settled: Vec<(Columns, Shown)> = Vec::new();
-                settle(
-                    &tracer.frame,
-                    &scratch.depth_tests,
-                    visible,
-                    y,
-                    (from, to),
-                    &mut settled,
-                );
-                for ((first, end), shown) in settled {
+                let mut settled = Settled::default();
+                let (frame, tests) = (&tracer.frame, &scratch.depth_tests);
+                for ((first, end), shown) in settled.settle(frame, tests, visible, y, (from, to)) {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);
                         let is_right = match (shown, decision) {

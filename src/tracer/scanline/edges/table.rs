@@ -1,7 +1,5 @@
 //! The edges of a frame: what changes where a row crosses them.
 
-use std::ops::Range;
-
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 use fearless_simd::prelude::*;
@@ -15,25 +13,33 @@ use crate::tracer::scanline::grid::ROWS;
 #[derive(Clone, Copy)]
 pub(crate) enum Edge {
     Surface,
-    ShadowOnSurface,
-    /// Part of a solid: it is asked for where that is seen.
-    Detail,
+    /// A shadow on the surface or on a facet.
+    Shadow(Receiver),
+    /// Between two facets of a tetrahedron.
+    Crease,
     /// A solid, by its place among those seen directly, or in the mirror.
     Direct(usize),
     Mirrored(usize),
 }
+
+/// What shadows fall on, by its number: the surface, or a facet.
+#[derive(Clone, Copy)]
+pub(crate) struct Receiver(pub(crate) u32);
 
 /// All edges of a frame, as they are found. Each is known by its number.
 pub(crate) struct Edges<'f> {
     arena: &'f Bump,
     shapes: Growing<'f, Region<'f>>,
     of: Growing<'f, Edge>,
+    receivers: u32,
 }
 
 /// The edges of a frame.
 pub(crate) struct EdgeTable<'f> {
     pub(crate) shapes: &'f [Region<'f>],
     pub(crate) of: &'f [Edge],
+    /// How many receivers of shadows there are.
+    pub(crate) receivers: usize,
     /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where
     /// the last are fewer, the others cross none.
     rows: &'f [[[u32; 64]; 2]],
@@ -66,26 +72,29 @@ impl<'f> Edges<'f> {
             arena,
             shapes: Growing::new_in(arena),
             of: Growing::new_in(arena),
+            receivers: 0,
         }
     }
 
-    /// Those of one kind come in the order of their solids.
-    pub(crate) fn add(&mut self, shape: Region<'f>, of: Edge) {
+    /// Adds one, and returns its number. Those of one kind come in the order of their solids.
+    pub(crate) fn add(&mut self, shape: Region<'f>, of: Edge) -> usize {
         self.shapes.push(shape);
         self.of.push(of);
+        self.of.len() - 1
     }
 
-    /// Details of a solid that is seen in these rows only. Returns their numbers.
-    pub(crate) fn add_details(
+    /// Something that is seen in these rows only, and the shadows on it.
+    pub(crate) fn add_receiver(
         &mut self,
-        shapes: impl IntoIterator<Item = Region<'f>>,
+        shadows: impl IntoIterator<Item = Region<'f>>,
         rows: (u32, u32),
-    ) -> Range<usize> {
-        let first = self.of.len();
-        for shape in shapes {
-            self.add(shape.within(rows), Edge::Detail);
+    ) -> Receiver {
+        let receiver = Receiver(self.receivers);
+        self.receivers += 1;
+        for shadow in shadows {
+            self.add(shadow.within(rows), Edge::Shadow(receiver));
         }
-        first..self.of.len()
+        receiver
     }
 
     pub(crate) fn all(self) -> EdgeTable<'f> {
@@ -98,6 +107,7 @@ impl<'f> Edges<'f> {
         });
         EdgeTable {
             rows: collect(self.arena, rows),
+            receivers: self.receivers as usize,
             shapes: self.shapes.into_bump_slice(),
             of: self.of.into_bump_slice(),
         }

@@ -7,7 +7,7 @@ use crate::tracer::pixel::{self, Picture};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::edges::table::{Edge, Receiver};
 use crate::tracer::scanline::prepare::prepared::Builder;
 use crate::tracer::scanline::prepare::solids::{Solids, shadows_on};
 use crate::tracer::scanline::rounding::{MORE, U};
@@ -22,6 +22,7 @@ pub(crate) struct Floor<'f> {
     depth: [f64; 3],
     pub(crate) paint: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
+    pub(crate) shadows: Receiver,
 }
 
 impl<'f> Floor<'f> {
@@ -70,10 +71,8 @@ impl<'f> Floor<'f> {
         parts.edges.add(outline.within(rows), Edge::Surface);
         let casters = 0..solids as u16;
         let view = &picture.view;
-        for shadow in shadows_on(&plane, view, casters, is_ahead, grid, parts.arena) {
-            let shadow = shadow.within(rows);
-            parts.edges.add(shadow, Edge::ShadowOnSurface);
-        }
+        let shadows = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
+        let shadows = parts.edges.add_receiver(shadows, rows);
         Floor {
             mirrored: floor
                 .mirror
@@ -86,6 +85,7 @@ impl<'f> Floor<'f> {
             ],
             paint: parts.paints.of(Decision::Surface),
             in_shadow: parts.paints.of(Decision::SurfaceInShadow),
+            shadows,
         }
     }
 

@@ -2,26 +2,24 @@
 
 use std::cell::LazyCell;
 use std::cmp::Ordering;
-use std::ops::Range;
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::{Bounded, Real};
-use crate::scene::{Side, Support};
+use crate::scene::Side;
 use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::decision::{Decision, Seen};
-use crate::tracer::frame::looking;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::{Ellipse, Lines, RowOffset};
+use crate::tracer::scanline::edges::ellipse::{Ellipse, Lines};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::edges::table::{Edge, Receiver};
 use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::depth::{Depth, face_plane, screen_plane};
 use crate::tracer::scanline::prepare::prepared::Builder;
-use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
@@ -29,7 +27,6 @@ use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::tetrahedron::HalfSpace;
-use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
 /// All solids that take part in a stage.
@@ -43,7 +40,7 @@ pub(crate) struct Solids<'f> {
 /// One of them.
 pub(crate) struct Solid<'f> {
     pub(crate) side: Side,
-    depth: Depth<'f>,
+    pub(crate) depth: Depth<'f>,
     pub(crate) body: Body<'f>,
 }
 
@@ -61,30 +58,13 @@ pub(crate) struct Facet {
     pub(crate) in_shadow: PaintNumber,
     /// Whether it is in shadow where nothing else throws one.
     pub(crate) turned_away: bool,
-    /// The edges of the shadows on it.
-    pub(crate) shadows: Range<usize>,
+    pub(crate) shadows: Receiver,
 }
 
 /// Two facets, the first of the lower number, and the edge of where eye rays enter that last.
 pub(crate) struct Pair {
     pub(crate) facets: (usize, usize),
     pub(crate) first: usize,
-}
-
-/// The parameter at which eye rays enter.
-enum Depth<'f> {
-    /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `shade/sphere.rs`.
-    Sphere {
-        off: RowOffset,
-        squared_radius: f64,
-        center: f64,
-        g: [f64; 2],
-        error: f64,
-        squared_error: f64,
-        support: Support,
-    },
-    /// The largest of some linear functions of X and Y, each with a bound on its error.
-    Facets(&'f [([f64; 3], f64)]),
 }
 
 impl<'f> Solids<'f> {
@@ -183,7 +163,7 @@ impl<'f> Solids<'f> {
                         in_shadow: paint(shadows),
                     }))
                 };
-                let depth = depth_of_sphere(sphere.center, &ellipse, sphere.support, grid);
+                let depth = Depth::of_sphere(sphere.center, &ellipse, sphere.support, grid);
                 let side = facts.sides[index];
                 if let Some(edge) = edge(solids.len(), side) {
                     let outline = Region::new(&[], Some(ellipse), grid).within(rows);
@@ -228,7 +208,7 @@ impl<'f> Solids<'f> {
                         lit: paint(false),
                         in_shadow: paint(shadows),
                         turned_away,
-                        shadows: parts.edges.add_details(thrown, rows),
+                        shadows: parts.edges.add_receiver(thrown, rows),
                     });
                 }
                 let place = |face: usize| t.from_eye.entered().position(|other| other == face);
@@ -237,7 +217,7 @@ impl<'f> Solids<'f> {
                     let first = Region::new(arena.alloc([plane(first)]), None, grid);
                     Some(Pair {
                         facets: (place(i)?, place(j)?),
-                        first: parts.edges.add_details([first], rows).start,
+                        first: parts.edges.add(first.within(rows), Edge::Crease),
                     })
                 });
                 let pairs = collect(arena, pairs);
@@ -259,128 +239,6 @@ impl<'f> Solids<'f> {
             separation,
         }
     }
-}
-
-impl Solid<'_> {
-    /// Bounds on the parameter at which the eye rays at Y, from one X to another, enter it.
-    pub(crate) fn depth(&self, y: f64, ends: [f64; 2]) -> (f64, f64) {
-        match &self.depth {
-            Depth::Sphere {
-                off,
-                squared_radius,
-                center,
-                g,
-                error,
-                squared_error,
-                ..
-            } => {
-                let m = off.at(y);
-                let squared = |q: f64| (squared_radius - m * m) - q * q;
-                let q = ends.map(|x| x - center);
-                let farthest = q[0].abs().max(q[1].abs());
-                let nearest = if q[0] * q[1] <= 0.0 {
-                    0.0
-                } else {
-                    q[0].abs().min(q[1].abs())
-                };
-                let least = (squared(farthest) - squared_error).max(0.0).sqrt();
-                let most = (squared(nearest) + squared_error).max(0.0).sqrt() * MORE;
-                // 1/√109, from below and from above.
-                const ROOT: f64 = 0.095_782_628_522_115_14;
-                let g = (g[0] + g[1] * y) / 109.0;
-                (
-                    g - most * ROOT * MORE - error,
-                    g - least * ROOT / MORE / MORE + error,
-                )
-            }
-            Depth::Facets(functions) => functions.iter().fold(
-                (f64::NEG_INFINITY, f64::NEG_INFINITY),
-                |(low, high), ([constant, column, row], error)| {
-                    let ends = ends.map(|x| constant + column * x + row * y);
-                    (
-                        low.max(ends[0].min(ends[1]) - error),
-                        high.max(ends[0].max(ends[1]) + error),
-                    )
-                },
-            ),
-        }
-    }
-
-    /// Whether both are the same sphere.
-    pub(crate) fn is_same_sphere(&self, other: &Solid<'_>) -> bool {
-        match (&self.depth, &other.depth) {
-            (Depth::Sphere { support: a, .. }, Depth::Sphere { support: b, .. }) => a == b,
-            _ => false,
-        }
-    }
-}
-
-fn depth_of_sphere(
-    center: Vector<Bounded>,
-    outline: &Ellipse,
-    support: Support,
-    grid: Grid,
-) -> Depth<'static> {
-    let [three, ten] = [3.0, 10.0].map(Bounded::exact);
-    // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
-    let constant = ten * (Bounded::exact(grid.reach) - center.z) - three * center.y;
-    let magnitude = constant.value().abs() + 3.0 * grid.reach;
-    let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.reach);
-    let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
-    let reach = radius + q;
-    Depth::Sphere {
-        off: outline.off,
-        squared_radius: outline.squared_radius,
-        center: center.x.value(),
-        g: [constant.value(), 3.0],
-        error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
-        squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
-            * MORE,
-        support,
-    }
-}
-
-/// The places of the pixels on the screen, where eye rays begin.
-fn screen_plane(grid: Grid) -> PixelPlane {
-    let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
-    PixelPlane {
-        origin: vector(0.0, 0.0, grid.reach),
-        per_column: vector(1.0, 0.0, 0.0),
-        per_row: vector(0.0, 1.0, 0.0),
-        plane: None,
-    }
-}
-
-/// Where eye rays meet the plane of a face, and at which parameter.
-fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, ([f64; 3], f64)) {
-    let eye = screen_plane(grid);
-    let d = looking::<Bounded>().vector;
-    // t = −n·(o − a)/(n·d), linear in o.
-    let speed = face.normal.dot(d);
-    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / speed);
-    let depths = [
-        depth(eye.origin - face.at),
-        depth(eye.per_column),
-        depth(eye.per_row),
-    ];
-    let magnitudes: f64 = depths
-        .iter()
-        .zip([1.0, grid.reach, grid.reach])
-        .map(|(depth, reach)| depth.value().abs() * reach)
-        .sum();
-    let errors: f64 = depths
-        .iter()
-        .zip([1.0, grid.reach, grid.reach])
-        .map(|(depth, reach)| depth.error() * reach)
-        .sum();
-    let plane = PixelPlane {
-        origin: eye.origin + d * depths[0],
-        per_column: eye.per_column + d * depths[1],
-        per_row: eye.per_row + d * depths[2],
-        plane: face.border,
-    };
-    let error = (errors + 8.0 * U * magnitudes) * MORE;
-    (plane, (depths.map(Bounded::value), error))
 }
 
 /// The pixels whose points on a plane are in the shadows of `casters`. Of a caster that `is_ahead`

@@ -141,12 +141,12 @@ pub(crate) fn shade<S: Simd>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'
             fill(simd, samples, run.in_shadow);
         } else {
             let is_deep = column >= run.deep.0 && end <= run.deep.1;
-            let error = sphere.errors[usize::from(!is_deep)];
+            let zone = usize::from(!is_deep);
             let is_bright = column < run.bright.1 && end > run.bright.0;
-            let ambient = ambient(simd, sphere, error);
-            let [low_lower, low_upper] = lit(simd, sphere, m, places[0], low, &ambient, is_bright);
-            let [high_lower, high_upper] =
-                lit(simd, sphere, m, places[1], high, &ambient, is_bright);
+            let ambient = ambient(simd, sphere, zone);
+            let bright = is_bright.then_some(zone);
+            let [low_lower, low_upper] = lit(simd, sphere, m, places[0], low, &ambient, bright);
+            let [high_lower, high_upper] = lit(simd, sphere, m, places[1], high, &ambient, bright);
             let lower = narrow::<S>(low_lower, high_lower);
             // An error is not −0, and so is no sum with one.
             let upper = narrow::<S>(low_upper, high_upper);
@@ -323,7 +323,8 @@ fn shadowed<S: Simd>(
 /// The ambient part of samples as they lie in memory, less and more than it is by a bound on the
 /// errors of all but the highlight.
 #[inline(always)]
-pub(crate) fn ambient<S: Simd>(simd: S, sphere: &RowSphere, error: f64) -> [[S::f64s; 3]; 2] {
+pub(crate) fn ambient<S: Simd>(simd: S, sphere: &RowSphere, zone: usize) -> [[S::f64s; 3]; 2] {
+    let error = sphere.errors[zone];
     let [red, green, blue] = of_cycle(simd, &sphere.color.ambient);
     [
         [red - error, green - error, blue - error],
@@ -332,7 +333,7 @@ pub(crate) fn ambient<S: Simd>(simd: S, sphere: &RowSphere, error: f64) -> [[S::
 }
 
 /// Samples of pixels in the light, from X = `x` on, as they lie in memory: from below and from
-/// above. `light` is their n·l.
+/// above. `light` is their n·l; `bright` is their zone where they may have a highlight.
 #[inline(always)]
 pub(crate) fn lit<S: Simd>(
     simd: S,
@@ -341,7 +342,7 @@ pub(crate) fn lit<S: Simd>(
     x: f64,
     light: S::f64s,
     ambient: &[[S::f64s; 3]; 2],
-    is_bright: bool,
+    bright: Option<usize>,
 ) -> [[S::f64s; 3]; 2] {
     let [mut lower, mut upper] = *ambient;
     let light = spread(light.max(0.0));
@@ -350,9 +351,10 @@ pub(crate) fn lit<S: Simd>(
         lower[i] = light[i].mul_add(diffuse[i], lower[i]);
         upper[i] = light[i].mul_add(diffuse[i], upper[i]);
     }
-    if let Some(halfway) = sphere.halfway.as_ref().filter(|_| is_bright) {
+    if let (Some(halfway), Some(zone)) = (&sphere.halfway, bright) {
         let hits = hits(simd, sphere, m, x);
-        let (power, error) = highlight(simd, sphere, halfway, m, &hits);
+        let errors = halfway.errors[zone];
+        let (power, error) = highlight(simd, sphere, (halfway, errors), m, &hits);
         // No coefficient is negative.
         let least = spread(power - error);
         let most = spread(power + error);
@@ -370,7 +372,7 @@ pub(crate) fn lit<S: Simd>(
 fn highlight<S: Simd>(
     simd: S,
     sphere: &RowSphere,
-    halfway: &Halfway,
+    (halfway, errors): (&Halfway, [f64; 2]),
     m: f64,
     hits: &Hits<S::f64s>,
 ) -> (S::f64s, S::f64s) {
@@ -382,7 +384,7 @@ fn highlight<S: Simd>(
     let scale = 0.5 * sphere.inverse_radius * sphere.inverse_radius;
     let missing = (squared * scale).min(1.0 - sphere.highlight);
     let power = power(simd, -missing + 1.0, sphere.exponent);
-    let [constant, slope] = halfway.errors;
+    let [constant, slope] = errors;
     // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is for
     // max(X, x) instead of x.
     let steep = power * (2.0 * 1.06) + 1.06 * halfway.least;

@@ -20,11 +20,11 @@ use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
 /// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have
-/// a small s: those with s ≥ R/8, those with s ≥ R/128, and the rest, which is left in doubt.
+/// a small s: those with s ≥ R/8, those with s ≥ R/16384, and the rest, which is left in doubt.
 pub(crate) const ZONES: usize = 2;
 
 /// What R is divided by for the least s of each zone.
-const DEPTHS: [f64; ZONES] = [8.0, 128.0];
+const DEPTHS: [f64; ZONES] = [8.0, 16384.0];
 
 /// constant + across · q + off · m + out · s, and a bound on its error in f64 in any zone.
 #[derive(Clone, Copy)]
@@ -109,9 +109,9 @@ pub(crate) struct Halfway {
     pub(crate) form: LinearForm,
     /// R h, in the axes of q, m and s.
     pub(crate) at: [f64; 3],
-    /// A bound on n times the error of 1 − n·h in any zone: a constant, and what 1 − n·h is
+    /// In each zone, a bound on n times the error of 1 − n·h: a constant, and what 1 − n·h is
     /// multiplied with.
-    pub(crate) errors: [f64; 2],
+    pub(crate) errors: [[f64; 2]; ZONES],
     /// 2¹⁻ⁿ.
     pub(crate) least: f64,
     /// Where m is farther than this from that of R h there is no highlight.
@@ -170,19 +170,21 @@ impl Known {
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
-        let known = [self.across, self.off, self.out[ZONES - 1]];
-        let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
-        let off = off / radius.value() * MORE;
-        // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
-        // products, by u of what they give.
-        let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
-        let slope = n * (off / steepest + inexact) * MORE;
-        let tame = constant + slope * highlight.limit < 1.0 / 64.0;
-        let errors = if tame {
-            [constant, slope]
-        } else {
-            [f64::INFINITY, 0.0]
-        };
+        let errors = self.out.map(|out| {
+            let known = [self.across, self.off, out];
+            let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
+            let off = off / radius.value() * MORE;
+            // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
+            // products, by u of what they give.
+            let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
+            let slope = n * (off / steepest + inexact) * MORE;
+            let tame = constant + slope * highlight.limit < 1.0 / 64.0;
+            if tame {
+                [constant, slope]
+            } else {
+                [f64::INFINITY, 0.0]
+            }
+        });
         Halfway {
             form: self.form(h.map(|component| component / radius)),
             at: at.map(Bounded::value),

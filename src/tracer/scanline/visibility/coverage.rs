@@ -3,7 +3,7 @@
 //! It follows the crossings of a row from the left to the right. So what it holds is as long as
 //! the list of what covers one column, and not as the list of all edges.
 
-use crate::tracer::scanline::edges::table::{Edge, EdgeTable};
+use crate::tracer::scanline::edges::table::{Edge, EdgeTable, Receiver};
 
 /// How a region covers the present column.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -83,7 +83,8 @@ pub(crate) struct Coverage {
     pub(crate) direct: Met,
     pub(crate) mirrored: Met,
     surface: Tally,
-    shadows: Tally,
+    /// The shadows on each receiver.
+    shadows: Vec<Tally>,
 }
 
 impl Coverage {
@@ -93,7 +94,9 @@ impl Coverage {
         self.covers.resize(edges.of.len(), Cover::Not);
         self.direct.clear();
         self.mirrored.clear();
-        (self.surface, self.shadows) = (Tally::default(), Tally::default());
+        self.surface = Tally::default();
+        self.shadows.clear();
+        self.shadows.resize(edges.receivers, Tally::default());
     }
 
     /// Goes across an edge: how its region covers the column then.
@@ -101,10 +104,10 @@ impl Coverage {
         let from = std::mem::replace(&mut self.covers[edge], to);
         match edges.of[edge] {
             Edge::Surface => self.surface.change(from, to),
-            Edge::ShadowOnSurface => self.shadows.change(from, to),
+            Edge::Shadow(Receiver(number)) => self.shadows[number as usize].change(from, to),
             Edge::Direct(solid) => self.direct.change(solid, from, to),
             Edge::Mirrored(solid) => self.mirrored.change(solid, from, to),
-            Edge::Detail => {}
+            Edge::Crease => {}
         }
     }
 
@@ -113,9 +116,9 @@ impl Coverage {
         self.surface.any()
     }
 
-    /// Whether the surface is in shadow there.
-    pub(crate) fn surface_in_shadow(&self) -> Option<bool> {
-        self.shadows.any()
+    /// Whether a receiver is in shadow there.
+    pub(crate) fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
+        self.shadows[number as usize].any()
     }
 
     /// Whether an edge's region covers the column.

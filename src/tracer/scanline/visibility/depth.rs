@@ -1,12 +1,28 @@
 //! The depth test: which of several solids is nearest where no plane keeps them apart.
 //!
 //! It bounds the depths of each solid over a run of columns. Where the bounds overlap, the run is
-//! halved, down to single pixels, which are then asked by themselves.
+//! halved, down to single pixels, which are then asked by themselves. A half is asked only about
+//! the solids that can be in front there.
 
 use crate::scene::Side;
 use crate::tracer::scanline::grid::Columns;
+use crate::tracer::scanline::prepare::depth::Rectangle;
 use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::visibility::visible::{DepthTest, DepthTests, Shown, Visible};
+
+/// The parts of a span that a row has settled, and what that needs, kept for the next span.
+#[derive(Default)]
+pub(crate) struct Settled {
+    parts: Vec<(Columns, Shown)>,
+    /// The solids that can be in front, run within run: the innermost last.
+    near: Vec<Near>,
+}
+
+/// A solid of a test, by its place there, and a lower bound on its depth in a run.
+struct Near {
+    place: usize,
+    least: f64,
+}
 
 /// What is in front of all else in some columns.
 enum Front {
@@ -14,75 +30,135 @@ enum Front {
     Solid(usize),
     /// The surface, or where that is not met either, the background.
     Rest,
-    Unknown,
+    /// Not known: it begins before this depth.
+    Before(f64),
 }
 
-/// What a row shows where it has to decide about that, from the left.
-pub(crate) fn settle(
-    frame: &Prepared<'_>,
-    depth_tests: &DepthTests,
-    visible: Visible,
-    y: f64,
-    columns: Columns,
-    settled: &mut Vec<(Columns, Shown)>,
-) {
-    let shows = match visible {
-        Visible::Only(shows) => shows,
-        Visible::First(test) => {
-            let test = depth_tests.test(test);
-            match (front(frame, &test, y, columns), halves(columns)) {
-                (Front::Solid(place), _) => test.solids[place].1,
-                (Front::Rest, _) => {
-                    return settle(frame, depth_tests, test.rest, y, columns, settled);
-                }
-                (Front::Unknown, Some(halves)) => {
-                    for half in halves {
-                        settle(frame, depth_tests, visible, y, half, settled);
-                    }
-                    return;
-                }
-                (Front::Unknown, None) => Shown::Unknown,
+impl Settled {
+    /// What a row shows in these columns, from the left, where it has to decide about that.
+    pub(crate) fn settle(
+        &mut self,
+        frame: &Prepared<'_>,
+        depth_tests: &DepthTests,
+        visible: Visible,
+        y: f64,
+        columns: Columns,
+    ) -> impl Iterator<Item = (Columns, Shown)> {
+        self.parts.clear();
+        self.add(frame, depth_tests, visible, y, columns);
+        self.parts.drain(..)
+    }
+
+    fn add(
+        &mut self,
+        frame: &Prepared<'_>,
+        depth_tests: &DepthTests,
+        visible: Visible,
+        y: f64,
+        columns: Columns,
+    ) {
+        match visible {
+            Visible::Only(shows) => self.push(columns, shows),
+            Visible::First(test) => {
+                let test = depth_tests.test(test);
+                let first = self.near.len();
+                let places = 0..test.solids.len();
+                self.near
+                    .extend(places.map(|place| Near { place, least: 0.0 }));
+                self.add_first(frame, (depth_tests, &test), first, y, columns);
+                self.near.truncate(first);
             }
         }
-    };
-    match settled.last_mut() {
-        Some((before, same)) if *same == shows => before.1 = columns.1,
-        _ => settled.push((columns, shows)),
+    }
+
+    /// The same by a test, among the solids in `near` from one on.
+    fn add_first(
+        &mut self,
+        frame: &Prepared<'_>,
+        tests: (&DepthTests, &DepthTest<'_>),
+        first: usize,
+        y: f64,
+        columns: Columns,
+    ) {
+        let (depth_tests, test) = tests;
+        let end = self.near.len();
+        let before = match front(frame, test, &mut self.near[first..], y, columns) {
+            Front::Solid(place) => return self.push(columns, test.solids[place].shown),
+            Front::Rest => return self.add(frame, depth_tests, test.rest, y, columns),
+            Front::Before(depth) => depth,
+        };
+        let Some(halves) = halves(columns) else {
+            return self.push(columns, Shown::Unknown);
+        };
+        for i in first..end {
+            let Near { place, least } = self.near[i];
+            if least <= before {
+                self.near.push(Near { place, least });
+            }
+        }
+        for half in halves {
+            self.add_first(frame, tests, end, y, half);
+        }
+        self.near.truncate(end);
+    }
+
+    fn push(&mut self, columns: Columns, shows: Shown) {
+        match self.parts.last_mut() {
+            Some((before, same)) if *same == shows => before.1 = columns.1,
+            _ => self.parts.push((columns, shows)),
+        }
     }
 }
 
-/// What is in front in all these columns.
-fn front(frame: &Prepared<'_>, test: &DepthTest<'_>, y: f64, columns: Columns) -> Front {
+/// What is in front in all these columns, among the solids `near`, of which the depths are bounded.
+fn front(
+    frame: &Prepared<'_>,
+    test: &DepthTest<'_>,
+    near: &mut [Near],
+    y: f64,
+    columns: Columns,
+) -> Front {
     let view = frame.solids(test.mirrored);
     let surface = frame.floor.as_ref().map(|floor| floor.depth_at(y));
-    let ends = [columns.0, columns.1 - 1].map(|column| frame.grid.place(column));
+    let run = Rectangle {
+        x: [columns.0, columns.1 - 1].map(|column| frame.grid.place(column)),
+        y: [y, y],
+    };
     // The candidate is what ends first; it is in front if all others begin behind that.
     let nothing = (f64::INFINITY, f64::INFINITY);
     let rest = surface.filter(|_| test.surface).unwrap_or(nothing);
     let mut candidate = (Front::Rest, rest);
     let mut others_begin = f64::INFINITY;
-    for (place, &(solid, _)) in test.solids.iter().enumerate() {
-        let solid = &view.solids[solid];
+    for Near { place, least: kept } in near {
+        let other = &test.solids[*place];
+        let solid = &view.solids[other.solid];
+        let support = solid.depth.support(other.facet);
         let (front, (begins, ends_first)) = &candidate;
-        // Of a sphere that is listed twice the first is seen.
+        // Where they are the same sphere, or faces in the same plane, the first is seen.
         if let Front::Solid(first) = front
-            && view.solids[test.solids[*first].0].is_same_sphere(solid)
+            && let first = &test.solids[*first]
+            && support.is_some()
+            && view.solids[first.solid].depth.support(first.facet) == support
         {
+            *kept = *begins;
             continue;
         }
-        let (least, most) = solid.depth(y, ends);
-        // The rays that the surface mirrors begin there.
+        let (least, most) = solid.depth.bounds(other.facet, run);
+        *kept = least;
+        // The rays that the surface mirrors begin there: a solid before that is not met.
         if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)
             && least <= to
         {
-            if most < from {
-                continue;
+            if most >= from {
+                others_begin = others_begin.min(least.max(from));
+            } else {
+                *kept = f64::INFINITY;
             }
-            return Front::Unknown;
+            continue;
         }
         if most < *ends_first {
             others_begin = others_begin.min(*begins);
-            candidate = (Front::Solid(place), (least, most));
+            candidate = (Front::Solid(*place), (least, most));
         } else {
             others_begin = others_begin.min(least);
         }
@@ -91,7 +167,7 @@ fn front(frame: &Prepared<'_>, test: &DepthTest<'_>, y: f64, columns: Columns) -
     if most.is_finite() && others_begin > most {
         front
     } else {
-        Front::Unknown
+        Front::Before(most)
     }
 }
 

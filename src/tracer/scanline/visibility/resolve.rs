@@ -5,7 +5,7 @@ use crate::tracer::scanline::prepare::floor::Floor;
 use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
 use crate::tracer::scanline::visibility::coverage::Coverage;
-use crate::tracer::scanline::visibility::visible::{DepthTests, Shown, Visible};
+use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
 
 /// What is visible in a span with this coverage. What rows have to decide goes to `depth_tests`.
 pub(crate) fn visible(
@@ -35,16 +35,14 @@ pub(crate) fn visible(
             if floor.is_none()
                 && let Some(solid) = direct.separation.first(met)
             {
-                return Visible::Only(solid_in(direct, solid, coverage));
+                return Visible::Only(candidate(direct, solid, coverage).shown);
             }
             let rest = match floor {
                 Some(floor) => visible_surface(floor, coverage, depth_tests),
                 None => Visible::Only(Shown::Paint(frame.background)),
             };
-            let shows = met
-                .iter()
-                .map(|&solid| (solid, solid_in(direct, solid, coverage)));
-            depth_tests.defer(false, shows, floor.is_some(), rest)
+            let candidates = met.iter().map(|&solid| candidate(direct, solid, coverage));
+            depth_tests.defer(false, candidates, floor.is_some(), rest)
         }
     }
 }
@@ -56,7 +54,7 @@ fn visible_surface(
     depth_tests: &mut DepthTests,
 ) -> Visible {
     let itself = Visible::Only(Shown::Paint(floor.paint));
-    let mirrored = match (coverage.surface_in_shadow(), &floor.mirrored) {
+    let mirrored = match (coverage.in_shadow(floor.shadows), &floor.mirrored) {
         (Some(true), _) => return Visible::Only(Shown::Paint(floor.in_shadow)),
         (None, _) => return Visible::UNKNOWN,
         (Some(false), None) => return itself,
@@ -74,26 +72,34 @@ fn visible_surface(
     if !met.iter().any(goes_through)
         && let Some(solid) = mirrored.separation.first(met)
     {
-        return Visible::Only(solid_in(mirrored, solid, coverage));
+        return Visible::Only(candidate(mirrored, solid, coverage).shown);
     }
-    let shows = met
+    let candidates = met
         .iter()
-        .map(|&solid| (solid, solid_in(mirrored, solid, coverage)));
-    depth_tests.defer(true, shows, false, itself)
+        .map(|&solid| candidate(mirrored, solid, coverage));
+    depth_tests.defer(true, candidates, false, itself)
 }
 
 /// What a column shows where it sees a solid.
-fn solid_in(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Shown {
-    match &view.solids[solid].body {
-        Body::Flat(paint) => Shown::Paint(*paint),
-        Body::Sphere(_) => Shown::Sphere {
-            mirrored: view.mirrored,
-            solid: solid as u32,
-        },
+fn candidate(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Candidate {
+    let (facet, shown) = match &view.solids[solid].body {
+        Body::Flat(paint) => (None, Shown::Paint(*paint)),
+        Body::Sphere(_) => {
+            let shown = Shown::Sphere {
+                mirrored: view.mirrored,
+                solid: solid as u32,
+            };
+            (None, shown)
+        }
         Body::Facets(facets, pairs) => match last_entered(pairs, coverage) {
-            Some(last) => facet_in(&facets[last], coverage),
-            None => Shown::Unknown,
+            Some(last) => (Some(last), facet_in(&facets[last], coverage)),
+            None => (None, Shown::Unknown),
         },
+    };
+    Candidate {
+        solid,
+        facet,
+        shown,
     }
 }
 
@@ -102,18 +108,10 @@ fn facet_in(facet: &Facet, coverage: &Coverage) -> Shown {
     if facet.turned_away {
         return Shown::Paint(facet.in_shadow);
     }
-    let mut all_known = true;
-    for shadow in facet.shadows.clone() {
-        match coverage.holds(shadow) {
-            Some(true) => return Shown::Paint(facet.in_shadow),
-            Some(false) => {}
-            None => all_known = false,
-        }
-    }
-    if all_known {
-        Shown::Paint(facet.lit)
-    } else {
-        Shown::Unknown
+    match coverage.in_shadow(facet.shadows) {
+        Some(true) => Shown::Paint(facet.in_shadow),
+        Some(false) => Shown::Paint(facet.lit),
+        None => Shown::Unknown,
     }
 }
 

@@ -66,10 +66,21 @@ impl Packed {
     }
 }
 
-/// Several solids, and what each shows where it is in front.
+/// A solid that may be in front.
+#[derive(Clone, Copy)]
+pub(crate) struct Candidate {
+    /// Its place among the solids or those in the mirror.
+    pub(crate) solid: usize,
+    /// The facet that is seen of a tetrahedron, where that is known.
+    pub(crate) facet: Option<usize>,
+    /// What it shows where it is in front.
+    pub(crate) shown: Shown,
+}
+
+/// Several solids, of which one is in front.
 pub(crate) struct DepthTest<'p> {
     pub(crate) mirrored: bool,
-    pub(crate) solids: &'p [(usize, Shown)],
+    pub(crate) solids: &'p [Candidate],
     /// Whether the surface may be in front of them.
     pub(crate) surface: bool,
     /// What is visible where none of them is in front.
@@ -92,7 +103,7 @@ const MANY: usize = 4096;
 #[derive(Default)]
 pub(crate) struct DepthTests {
     tests: Vec<Stored>,
-    solids: Vec<(usize, Shown)>,
+    solids: Vec<Candidate>,
 }
 
 impl DepthTests {
@@ -110,7 +121,7 @@ impl DepthTests {
     pub(crate) fn defer(
         &mut self,
         mirrored: bool,
-        solids: impl Iterator<Item = (usize, Shown)>,
+        solids: impl Iterator<Item = Candidate>,
         surface: bool,
         rest: Visible,
     ) -> Visible {
