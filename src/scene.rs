@@ -3,6 +3,9 @@
 mod casters;
 mod exact;
 mod file;
+mod hidden;
+mod hull;
+mod rational;
 
 use std::sync::LazyLock;
 

@@ -3,44 +3,12 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-use dashu_base::Sign;
-use dashu_ratio::{RBig, Relaxed};
 use glam::DVec3;
 
 use super::casters::casters;
+use super::hidden::hidden;
+use super::rational::{Plane, cross, dot, exact, minus, sign};
 use super::{Sphere, Surface, Tetrahedron};
-
-type Rational = [Relaxed; 3];
-
-/// The vector of these f64s, taken exactly; one that is not finite counts as 0.
-fn exact(v: DVec3) -> Rational {
-    v.to_array()
-        .map(|x| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO))
-}
-
-fn minus(a: &Rational, b: &Rational) -> Rational {
-    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
-}
-
-fn cross(a: &Rational, b: &Rational) -> Rational {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
-}
-
-fn dot(a: &Rational, b: &Rational) -> Relaxed {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn sign(x: &Relaxed) -> Ordering {
-    match x.sign() {
-        _ if *x == Relaxed::ZERO => Ordering::Equal,
-        Sign::Positive => Ordering::Greater,
-        Sign::Negative => Ordering::Less,
-    }
-}
 
 /// The sign of six times the signed volume, (b − a) · ((c − a) × (d − a)): equal where the four
 /// points lie in one plane.
@@ -70,8 +38,11 @@ pub(crate) struct Facts {
     pub(crate) facing_light: Vec<[Ordering; 4]>,
     /// Where each solid is, spheres first, seen from the surface; `Above` where there is none.
     pub(crate) sides: Vec<Side>,
+    /// For each solid, spheres first, whether another one hides all of it, so that neither it nor
+    /// its shadow is seen where all solids take part.
+    pub(crate) hidden: Vec<bool>,
     /// For each solid, spheres first, the others that may stand between a point of it and the
-    /// light.
+    /// light; of hidden ones nobody asks.
     pub(crate) casters: Vec<Vec<u16>>,
 }
 
@@ -136,7 +107,8 @@ impl Facts {
                 of_surface(&|surface| side_of_tetrahedron(tetrahedron, surface))
             }))
             .collect();
-        let casters = casters(spheres, tetrahedra, -direction);
+        let hidden = hidden(spheres, tetrahedra);
+        let casters = casters(spheres, tetrahedra, -direction, &hidden);
 
         let mut same_spheres = HashMap::new();
         let spheres = spheres.iter().map(|sphere| {
@@ -182,42 +154,8 @@ impl Facts {
             surface,
             facing_light,
             sides,
+            hidden,
             casters,
-        }
-    }
-}
-
-/// The points x with normal · x = offset.
-struct Plane {
-    normal: Rational,
-    offset: Relaxed,
-}
-
-impl Plane {
-    /// The plane of face `k`, its normal outward.
-    fn of_face(vertices: &[Rational; 4], k: usize) -> Plane {
-        let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &vertices[i]);
-        let normal = cross(&minus(b, a), &minus(c, a));
-        let outward = sign(&dot(&normal, &minus(&vertices[k], a))).is_lt();
-        let normal = if outward { normal } else { normal.map(|x| -x) };
-        Plane {
-            offset: dot(&normal, a),
-            normal,
-        }
-    }
-
-    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the
-    /// same plane.
-    fn coefficients(self) -> [RBig; 4] {
-        let [x, y, z] = self.normal.map(Relaxed::canonicalize);
-        let all = [x, y, z, self.offset.canonicalize()];
-        match all
-            .iter()
-            .find(|coefficient| **coefficient != RBig::ZERO)
-            .cloned()
-        {
-            Some(first) => all.map(|coefficient| coefficient / &first),
-            None => all,
         }
     }
 }

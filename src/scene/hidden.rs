@@ -1,0 +1,107 @@
+//! Which solids lie inside of others: nobody ever sees them, nor their shadows.
+//!
+//! Eye rays, mirrored ones and those from the light come from outside of all solids, or leave one
+//! that is seen. They meet what is inside of a solid after that solid; where both are met at once,
+//! the earlier in the scene's order is seen.
+
+use std::cmp::Ordering;
+
+use dashu_ratio::Relaxed;
+use glam::DVec3;
+
+use super::hull::{MORE, each_pair_along, hulls};
+use super::rational::{Plane, dot, exact, minus, sign};
+use super::{Sphere, Tetrahedron};
+
+/// A solid of a scene.
+#[derive(Clone, Copy)]
+enum Solid<'s> {
+    Sphere(&'s Sphere),
+    Tetrahedron(&'s Tetrahedron),
+}
+
+/// For each solid, spheres first, whether it lies inside of another, and is not seen where both
+/// have a point in common.
+pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
+    let hulls = hulls(spheres, tetrahedra);
+    let solid = |number: usize| match spheres.get(number) {
+        Some(sphere) => Solid::Sphere(sphere),
+        None => Solid::Tetrahedron(&tetrahedra[number - spheres.len()]),
+    };
+    let mut hidden = vec![false; hulls.len()];
+    each_pair_along(&hulls, DVec3::X, |a, b| {
+        for (inner, outer) in [(a, b), (b, a)] {
+            let (small, large) = (&hulls[inner], &hulls[outer]);
+            let slack = (small.center.abs() + large.center.abs()).element_sum() * (MORE - 1.0);
+            let distance = small.center.distance(large.center);
+            // Of a tetrahedron the hull is larger than need be, and not all of it need be inside.
+            let may = match (solid(inner), solid(outer)) {
+                (Solid::Sphere(_), _) => distance + small.radius <= large.radius * MORE + slack,
+                (Solid::Tetrahedron(_), _) => distance <= large.radius * MORE + slack,
+            };
+            if may && !hidden[inner] && !hidden[outer] {
+                hidden[inner] = is_inside(solid(inner), solid(outer), outer < inner);
+            }
+        }
+    });
+    hidden
+}
+
+/// Whether a solid lies inside of another: in its interior, or where its border belongs to it.
+fn is_inside(inner: Solid<'_>, outer: Solid<'_>, closed: bool) -> bool {
+    let is_in = |depth: &Relaxed| match sign(depth) {
+        Ordering::Greater => true,
+        Ordering::Equal => closed,
+        Ordering::Less => false,
+    };
+    let number = |x: f64| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO);
+    match (inner, outer) {
+        (Solid::Sphere(inner), Solid::Sphere(outer)) => {
+            let between = minus(&exact(inner.center), &exact(outer.center));
+            let gap = number(outer.radius) - number(inner.radius);
+            !sign(&gap).is_lt() && is_in(&(&gap * &gap - dot(&between, &between)))
+        }
+        (Solid::Tetrahedron(inner), Solid::Sphere(outer)) => {
+            let (center, radius) = (exact(outer.center), number(outer.radius));
+            inner.vertices.iter().all(|vertex| {
+                let from = minus(&exact(*vertex), &center);
+                is_in(&(&radius * &radius - dot(&from, &from)))
+            })
+        }
+        (inner, Solid::Tetrahedron(outer)) => {
+            let points: Vec<DVec3> = match inner {
+                Solid::Sphere(sphere) => vec![sphere.center],
+                Solid::Tetrahedron(tetrahedron) => tetrahedron.vertices.to_vec(),
+            };
+            let radius = match inner {
+                Solid::Sphere(sphere) => number(sphere.radius),
+                Solid::Tetrahedron(_) => Relaxed::ZERO,
+            };
+            // In f64 first: most are far from it.
+            let beyond = |point: &DVec3| {
+                (0..4).any(|k: usize| {
+                    let [a, b, c] =
+                        [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| outer.vertices[i]);
+                    let normal = (b - a).cross(c - a);
+                    let side = |p: DVec3| normal.dot(p - a);
+                    let scale = normal.length() * (point.abs() + a.abs()).element_sum();
+                    let own = side(outer.vertices[k]);
+                    side(*point) * own.signum() < -1e-6 * scale
+                })
+            };
+            if points.iter().any(beyond) {
+                return false;
+            }
+            let vertices = outer.vertices.map(exact);
+            (0..4).all(|k| {
+                let plane = Plane::of_face(&vertices, k);
+                let length = dot(&plane.normal, &plane.normal);
+                points.iter().all(|point| {
+                    let depth = &plane.offset - dot(&plane.normal, &exact(*point));
+                    // depth/√length > radius.
+                    !sign(&depth).is_lt() && is_in(&(&depth * &depth - &length * &radius * &radius))
+                })
+            })
+        }
+    }
+}

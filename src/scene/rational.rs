@@ -1,0 +1,74 @@
+//! Vectors and planes in exact rational arithmetic.
+
+use std::cmp::Ordering;
+
+use dashu_base::Sign;
+use dashu_ratio::{RBig, Relaxed};
+use glam::DVec3;
+
+pub(super) type Rational = [Relaxed; 3];
+
+/// The vector of these f64s, taken exactly; one that is not finite counts as 0.
+pub(super) fn exact(v: DVec3) -> Rational {
+    v.to_array()
+        .map(|x| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO))
+}
+
+pub(super) fn minus(a: &Rational, b: &Rational) -> Rational {
+    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
+}
+
+pub(super) fn cross(a: &Rational, b: &Rational) -> Rational {
+    [
+        &a[1] * &b[2] - &a[2] * &b[1],
+        &a[2] * &b[0] - &a[0] * &b[2],
+        &a[0] * &b[1] - &a[1] * &b[0],
+    ]
+}
+
+pub(super) fn dot(a: &Rational, b: &Rational) -> Relaxed {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+pub(super) fn sign(x: &Relaxed) -> Ordering {
+    match x.sign() {
+        _ if *x == Relaxed::ZERO => Ordering::Equal,
+        Sign::Positive => Ordering::Greater,
+        Sign::Negative => Ordering::Less,
+    }
+}
+
+/// The points x with normal · x = offset.
+pub(super) struct Plane {
+    pub(super) normal: Rational,
+    pub(super) offset: Relaxed,
+}
+
+impl Plane {
+    /// The plane of face `k`, its normal outward.
+    pub(super) fn of_face(vertices: &[Rational; 4], k: usize) -> Plane {
+        let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &vertices[i]);
+        let normal = cross(&minus(b, a), &minus(c, a));
+        let outward = sign(&dot(&normal, &minus(&vertices[k], a))).is_lt();
+        let normal = if outward { normal } else { normal.map(|x| -x) };
+        Plane {
+            offset: dot(&normal, a),
+            normal,
+        }
+    }
+
+    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the
+    /// same plane.
+    pub(super) fn coefficients(self) -> [RBig; 4] {
+        let [x, y, z] = self.normal.map(Relaxed::canonicalize);
+        let all = [x, y, z, self.offset.canonicalize()];
+        match all
+            .iter()
+            .find(|coefficient| **coefficient != RBig::ZERO)
+            .cloned()
+        {
+            Some(first) => all.map(|coefficient| coefficient / &first),
+            None => all,
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The parameter at which eye rays enter a solid, bounded over parts of the screen.
+
+use crate::number::{Bounded, Real};
+use crate::scene::Support;
+use crate::tracer::frame::looking;
+use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+
+/// The parameter at which eye rays enter a solid.
+pub(crate) enum Depth<'f> {
+    /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `shade/sphere.rs`.
+    Sphere {
+        off: RowOffset,
+        squared_radius: f64,
+        center: f64,
+        g: [f64; 2],
+        error: f64,
+        squared_error: f64,
+        support: Support,
+    },
+    /// The largest of some linear functions of X and Y, one a facet.
+    Facets(&'f [FacetDepth]),
+}
+
+/// The parameter at which eye rays meet the plane of a facet: constant + column · X + row · Y.
+pub(crate) struct FacetDepth {
+    constant: f64,
+    column: f64,
+    row: f64,
+    /// A bound on the error anywhere on the screen.
+    error: f64,
+    /// The plane.
+    support: Option<Support>,
+}
+
+/// A rectangle of the screen: from one X and Y to others, both ends included.
+#[derive(Clone, Copy)]
+pub(crate) struct Rectangle {
+    pub(crate) x: [f64; 2],
+    pub(crate) y: [f64; 2],
+}
+
+/// The least and the most that is known; everything, where a bound is not a number.
+fn bounds(least: f64, most: f64) -> (f64, f64) {
+    if least.is_nan() || most.is_nan() {
+        (f64::NEG_INFINITY, f64::INFINITY)
+    } else {
+        (least, most)
+    }
+}
+
+/// The least and the most |x| of a range.
+fn magnitudes([a, b]: [f64; 2]) -> [f64; 2] {
+    let (low, high) = (a.abs().min(b.abs()), a.abs().max(b.abs()));
+    [if a * b <= 0.0 { 0.0 } else { low }, high]
+}
+
+impl FacetDepth {
+    /// Its bounds in a rectangle.
+    fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
+        // Rounding keeps order: the extremes of a linear function are at corners.
+        let [left, right] = x.map(|x| self.constant + self.column * x);
+        let [low, high] = y.map(|y| self.row * y);
+        bounds(
+            left.min(right) + low.min(high) - self.error,
+            left.max(right) + low.max(high) + self.error,
+        )
+    }
+}
+
+impl Depth<'_> {
+    /// Its bounds in a rectangle: where eye rays enter by `facet`, if that is known.
+    pub(crate) fn bounds(&self, facet: Option<usize>, rectangle: Rectangle) -> (f64, f64) {
+        match self {
+            Depth::Sphere {
+                off,
+                squared_radius,
+                center,
+                g,
+                error,
+                squared_error,
+                ..
+            } => {
+                let m = magnitudes(rectangle.y.map(|y| off.at(y)));
+                let q = magnitudes(rectangle.x.map(|x| x - center));
+                let squared = |end: usize| (squared_radius - m[end] * m[end]) - q[end] * q[end];
+                let least = (squared(1) - squared_error).max(0.0).sqrt();
+                let most = (squared(0) + squared_error).max(0.0).sqrt() * MORE;
+                // 1/√109, from below and from above.
+                const ROOT: f64 = 0.095_782_628_522_115_14;
+                let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / 109.0);
+                bounds(
+                    low - most * ROOT * MORE - error,
+                    high - least * ROOT / MORE / MORE + error,
+                )
+            }
+            Depth::Facets(facets) => match facet.and_then(|facet| facets.get(facet)) {
+                Some(facet) => facet.bounds(rectangle),
+                None => facets.iter().fold(
+                    (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                    |(low, high), facet| {
+                        let (least, most) = facet.bounds(rectangle);
+                        (low.max(least), high.max(most))
+                    },
+                ),
+            },
+        }
+    }
+
+    /// What the points lie on that are seen of it, or of one of its facets: the same sphere or
+    /// plane is met at the same depth.
+    pub(crate) fn support(&self, facet: Option<usize>) -> Option<Support> {
+        match self {
+            Depth::Sphere { support, .. } => Some(*support),
+            Depth::Facets(facets) => facets.get(facet?)?.support,
+        }
+    }
+
+    /// That of a sphere with this outline.
+    pub(crate) fn of_sphere(
+        center: Vector<Bounded>,
+        outline: &Ellipse,
+        support: Support,
+        grid: Grid,
+    ) -> Depth<'static> {
+        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
+        let constant = ten * (Bounded::exact(grid.reach) - center.z) - three * center.y;
+        let magnitude = constant.value().abs() + 3.0 * grid.reach;
+        let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.reach);
+        let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
+        let reach = radius + q;
+        Depth::Sphere {
+            off: outline.off,
+            squared_radius: outline.squared_radius,
+            center: center.x.value(),
+            g: [constant.value(), 3.0],
+            error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
+            squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
+                * MORE,
+            support,
+        }
+    }
+}
+
+/// The places of the pixels on the screen, where eye rays begin.
+pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
+    let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
+    PixelPlane {
+        origin: vector(0.0, 0.0, grid.reach),
+        per_column: vector(1.0, 0.0, 0.0),
+        per_row: vector(0.0, 1.0, 0.0),
+        plane: None,
+    }
+}
+
+/// Where eye rays meet the plane of a face, and at which parameter.
+pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, FacetDepth) {
+    let eye = screen_plane(grid);
+    let d = looking::<Bounded>().vector;
+    // t = −n·(o − a)/(n·d), linear in o.
+    let speed = face.normal.dot(d);
+    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / speed);
+    let depths = [
+        depth(eye.origin - face.at),
+        depth(eye.per_column),
+        depth(eye.per_row),
+    ];
+    let sum = |of: &dyn Fn(&Bounded) -> f64| -> f64 {
+        let reaches = [1.0, grid.reach, grid.reach];
+        let terms = depths.iter().zip(reaches);
+        terms.map(|(depth, reach)| of(depth) * reach).sum()
+    };
+    let (magnitudes, errors) = (
+        sum(&|depth| depth.value().abs()),
+        sum(&|depth| depth.error()),
+    );
+    let plane = PixelPlane {
+        origin: eye.origin + d * depths[0],
+        per_column: eye.per_column + d * depths[1],
+        per_row: eye.per_row + d * depths[2],
+        plane: face.border,
+    };
+    let [constant, column, row] = depths.map(Bounded::value);
+    let depth = FacetDepth {
+        constant,
+        column,
+        row,
+        error: (errors + 8.0 * U * magnitudes) * MORE,
+        support: face.border,
+    };
+    (plane, depth)
+}
