@@ -32,11 +32,26 @@ impl Extent {
 
     /// Its rows of a picture of `size` rows, from the first to before the last.
     pub(super) fn rows(&self, size: u32) -> (u32, u32) {
-        let limit = |row: i64| row.clamp(0, size.into()) as u32;
-        (
-            limit(*self.rows.start()),
-            limit(self.rows.end().saturating_add(1)),
-        )
+        within(&self.rows, size)
+    }
+
+    /// Its columns.
+    pub(super) fn columns(&self, size: u32) -> (u32, u32) {
+        within(&self.columns, size)
+    }
+
+    /// Whether any pixel is in both.
+    pub(super) fn meets(&self, other: &Extent) -> bool {
+        let meet = |a: &RangeInclusive<i64>, b: &RangeInclusive<i64>| {
+            a.start() <= b.end() && b.start() <= a.end()
+        };
+        meet(&self.columns, &other.columns) && meet(&self.rows, &other.rows)
+    }
+
+    /// How many pixels of a picture are in it.
+    pub(super) fn area(&self, size: u32) -> u64 {
+        let length = |(from, to): (u32, u32)| u64::from(to.saturating_sub(from));
+        length(self.columns(size)) * length(self.rows(size))
     }
 
     /// The smallest that holds the shadows that all `points` cast on the screen along the eye's
@@ -70,6 +85,12 @@ impl Extent {
             rows: range(&mut rows.into_iter()),
         }
     }
+}
+
+/// What of a range lies in a picture.
+fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
+    let limit = |number: i64| number.clamp(0, size.into()) as u32;
+    (limit(*range.start()), limit(range.end().saturating_add(1)))
 }
 
 impl<'f> Extents<'f> {

@@ -113,7 +113,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         let color = |decision| pixels.color(decision);
         RowTracer {
             pixels,
-            frame: Prepared::new(pixels.bounded(), &color, &arena.frame),
+            frame: Prepared::new(pixels.bounded(), &color, level, &arena.frame),
             level,
             precision,
         }

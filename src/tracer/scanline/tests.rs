@@ -148,11 +148,14 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                             (Shown::Paint(paint), _) => {
                                 tracer.frame.paints[paint].decision == decision
                             }
-                            (Shown::Sphere { mirrored, solid }, Decision::Solid(seen)) => {
-                                !mirrored && u32::from(seen.solid) == solid
-                            }
-                            (Shown::Sphere { mirrored, solid }, Decision::Mirrored(seen)) => {
-                                mirrored && u32::from(seen.solid) == solid
+                            (
+                                Shown::Sphere { mirrored, solid },
+                                Decision::Solid(seen) | Decision::Mirrored(seen),
+                            ) => {
+                                let solids = tracer.frame.solids(mirrored).solids;
+                                let is_mirrored = matches!(decision, Decision::Mirrored(_));
+                                let number = solids[solid as usize].number;
+                                mirrored == is_mirrored && number == usize::from(seen.solid)
                             }
                             (Shown::Sphere { .. }, _) => false,
                         };

@@ -40,15 +40,29 @@ impl<'f> Region<'f> {
         }
     }
 
-    /// The same where it is known to cross no other than these rows.
+    /// The same where it is known to cross no other than these rows, or none matters.
     pub(crate) fn within(mut self, rows: (u32, u32)) -> Self {
-        self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
+        self.restrict(rows);
         self
+    }
+
+    /// Leaves out all other rows.
+    pub(crate) fn restrict(&mut self, rows: (u32, u32)) {
+        self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
     }
 
     /// The rows that it can cross.
     pub(crate) fn rows(&self) -> (u32, u32) {
         self.rows
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        self.rows.0 >= self.rows.1
+    }
+
+    pub(crate) fn ellipse(&self) -> Option<&Ellipse> {
+        self.ellipse.as_ref()
     }
 
     /// Its columns of the rows from `row` on.

@@ -91,8 +91,9 @@ impl<'f> Edges<'f> {
     ) -> Receiver {
         let receiver = Receiver(self.receivers);
         self.receivers += 1;
-        for shadow in shadows {
-            self.add(shadow.within(rows), Edge::Shadow(receiver));
+        let shadows = shadows.into_iter().map(|shadow| shadow.within(rows));
+        for shadow in shadows.filter(|shadow| !shadow.is_nowhere()) {
+            self.add(shadow, Edge::Shadow(receiver));
         }
         receiver
     }

@@ -1,5 +1,7 @@
 //! The surface as a frame's rows cross it.
 
+use bumpalo::collections::Vec as Growing;
+
 use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::tracer::decision::Decision;
@@ -8,8 +10,11 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Edge, Receiver};
+use crate::tracer::scanline::prepare::culling::Tiles;
+use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::prepared::Builder;
-use crate::tracer::scanline::prepare::solids::{Solids, shadows_on};
+use crate::tracer::scanline::prepare::shadows::shadows_on;
+use crate::tracer::scanline::prepare::solids::Solids;
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
@@ -17,18 +22,18 @@ use crate::tracer::vector::Vector;
 /// The surface, from stage 5 on.
 pub(crate) struct Floor<'f> {
     pub(crate) mirrored: Option<Solids<'f>>,
-    /// The parameter of eye rays that reach it at Y = 0, how it changes with Y, and a bound on its
-    /// error.
-    depth: [f64; 3],
+    depth: Plane,
     pub(crate) paint: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
     pub(crate) shadows: Receiver,
 }
 
 impl<'f> Floor<'f> {
+    /// `tiles` tells where solids hide it, where so many overlap that this was looked at.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         floor: &pixel::Floor<'_, Bounded>,
+        tiles: Option<&Tiles<'f>>,
         parts: &mut Builder<'f, '_>,
     ) -> Self {
         let grid = parts.grid;
@@ -66,23 +71,38 @@ impl<'f> Floor<'f> {
         // very beginning, but there the solid is seen, and not the surface.
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
+        let depth = Plane {
+            constant: -height.value(),
+            per_row: third.value(),
+            error: (height.error() + 8.0 * U * magnitude) * MORE,
+        };
         let rows = floor.extent.rows(grid.size);
-        let outline = Region::new(parts.arena.alloc(sides), None, grid);
-        parts.edges.add(outline.within(rows), Edge::Surface);
-        let casters = 0..solids as u16;
+        let outline = Region::new(parts.arena.alloc(sides), None, grid).within(rows);
         let view = &picture.view;
-        let shadows = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
+        let hidden = &scene.facts().hidden;
+        let casters = (0..solids as u16).filter(|caster| !hidden[usize::from(*caster)]);
+        let thrown = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
+        let mut shadows = Growing::new_in(parts.arena);
+        shadows.extend(thrown.map(|shadow| shadow.within(rows)));
+        let mirror = floor.mirror.as_ref();
+        let mut mirrored = mirror.map(|mirror| {
+            let within = Some(&floor.extent);
+            Outlines::new(picture, &mirror.view, within, grid, parts.arena)
+        });
+        if let Some(tiles) = tiles {
+            let mut seen = tiles.seen_through(&outline, |y| depth.at(y).0, parts.arena);
+            seen.restrict_shadows(&mut shadows, parts.arena);
+            if let Some(mirrored) = &mut mirrored {
+                mirrored.cull(&mut seen);
+            }
+        }
+        parts.edges.add(outline, Edge::Surface);
         let shadows = parts.edges.add_receiver(shadows, rows);
         Floor {
-            mirrored: floor
-                .mirror
-                .as_ref()
-                .map(|mirror| Solids::new(picture, &mirror.view, true, parts)),
-            depth: [
-                -height.value(),
-                third.value(),
-                (height.error() + 8.0 * U * magnitude) * MORE,
-            ],
+            mirrored: mirror
+                .zip(mirrored)
+                .map(|(mirror, outlines)| Solids::new(picture, &mirror.view, outlines, parts)),
+            depth,
             paint: parts.paints.of(Decision::Surface),
             in_shadow: parts.paints.of(Decision::SurfaceInShadow),
             shadows,
@@ -92,8 +112,22 @@ impl<'f> Floor<'f> {
     /// The parameter at which the eye rays at Y reach it, from the least to the most that it can
     /// be.
     pub(crate) fn depth_at(&self, y: f64) -> (f64, f64) {
-        let [constant, per_row, error] = self.depth;
-        let depth = constant + per_row * y;
-        (depth - error, depth + error)
+        self.depth.at(y)
+    }
+}
+
+/// The parameter at which eye rays reach a level plane, which goes linearly with Y, and a bound on
+/// its error.
+struct Plane {
+    constant: f64,
+    per_row: f64,
+    error: f64,
+}
+
+impl Plane {
+    /// From the least to the most that it can be at Y.
+    fn at(&self, y: f64) -> (f64, f64) {
+        let depth = self.constant + self.per_row * y;
+        (depth - self.error, depth + self.error)
     }
 }

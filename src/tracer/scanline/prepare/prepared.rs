@@ -1,6 +1,7 @@
 //! A frame as its rows are traced from: plain data, and all that the stages know of it.
 
 use bumpalo::Bump;
+use fearless_simd::Level;
 
 use crate::number::Bounded;
 use crate::stage::Stage;
@@ -8,7 +9,9 @@ use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::table::{EdgeTable, Edges};
 use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::floor::Floor;
+use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::solids::Solids;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 
@@ -40,6 +43,7 @@ impl<'f> Prepared<'f> {
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
+        level: Level,
         arena: &'f Bump,
     ) -> Self {
         let grid = Grid::new(picture.size);
@@ -51,9 +55,15 @@ impl<'f> Prepared<'f> {
             shaded_spheres: 0,
         };
         let background = parts.paints.of(Decision::Background);
+        let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
+        let tiles = outlines.are_deep(grid).then(|| {
+            let mut tiles = Tiles::new(grid, level, arena);
+            outlines.cull(&mut tiles);
+            tiles
+        });
         let floor = picture.floor.as_ref();
-        let floor = floor.map(|floor| Floor::new(picture, floor, &mut parts));
-        let direct = Solids::new(picture, &picture.view, false, &mut parts);
+        let floor = floor.map(|floor| Floor::new(picture, floor, tiles.as_ref(), &mut parts));
+        let direct = Solids::new(picture, &picture.view, outlines, &mut parts);
         let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         Prepared {

@@ -23,12 +23,8 @@ pub(crate) struct Separation<'f> {
 }
 
 impl<'f> Separation<'f> {
-    /// Of the solids of `view` with these numbers, spheres before tetrahedra.
-    pub(crate) fn new(
-        view: &View<'_, Bounded>,
-        solids: std::ops::Range<usize>,
-        arena: &'f Bump,
-    ) -> Self {
+    /// Of the solids of `view` with these numbers.
+    pub(crate) fn new(view: &View<'_, Bounded>, solids: &[usize], arena: &'f Bump) -> Self {
         let count = if solids.len() <= MOST {
             solids.len()
         } else {
@@ -37,7 +33,7 @@ impl<'f> Separation<'f> {
         let in_front = arena.alloc_slice_fill_copy(count * count, None);
         for i in 0..count {
             for j in 0..i {
-                let known = is_in_front(view, solids.start + i, solids.start + j);
+                let known = is_in_front(view, solids[i], solids[j]);
                 in_front[i * count + j] = known;
                 in_front[j * count + i] = known.map(|first| !first);
             }

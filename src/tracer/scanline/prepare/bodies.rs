@@ -1,0 +1,169 @@
+//! How the pixels of solids are coloured, and which shadows fall on them.
+
+use std::cell::OnceCell;
+
+use bumpalo::collections::Vec as Growing;
+
+use crate::number::Bounded;
+use crate::stage::Stage;
+use crate::tracer::arena::collect;
+use crate::tracer::decision::{Decision, Seen};
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::region::Region;
+use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::prepare::depth::screen_plane;
+use crate::tracer::scanline::prepare::outline::Outlined;
+use crate::tracer::scanline::prepare::prepared::Builder;
+use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
+use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair};
+use crate::tracer::scanline::shade::light::Lighting;
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::sphere::Sphere;
+use crate::tracer::view::View;
+
+/// What the bodies of a view have in common.
+pub(crate) struct Bodies<'p, 's> {
+    picture: &'p Picture<'s, Bounded>,
+    view: &'p View<'s, Bounded>,
+    mirrored: bool,
+    /// Whether points can be in shadow.
+    shadows: bool,
+    surface: SurfaceShadow<'p>,
+    /// Found when the first sphere asks for it.
+    lighting: OnceCell<Lighting>,
+}
+
+impl<'p, 's> Bodies<'p, 's> {
+    /// `view` is that of the scene, or the one in the mirror.
+    pub(crate) fn new(
+        picture: &'p Picture<'s, Bounded>,
+        view: &'p View<'s, Bounded>,
+        mirrored: bool,
+    ) -> Self {
+        Bodies {
+            picture,
+            view,
+            mirrored,
+            shadows: picture.stage >= Stage::Shadow,
+            surface: SurfaceShadow::new(picture, view, mirrored),
+            lighting: OnceCell::new(),
+        }
+    }
+
+    /// The body of a solid, with what it brings of edges and paints.
+    pub(crate) fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+        match (self.view.spheres.get(solid.number), solid.outline.ellipse()) {
+            (Some(sphere), Some(outline)) => self.sphere(solid.number, sphere, outline, parts),
+            _ => self.facets(solid, parts),
+        }
+    }
+
+    fn decision(&self, solid: usize, face: Option<usize>, in_shadow: bool) -> Decision {
+        let seen = Seen {
+            solid: solid as u16,
+            face: face.map(|face| face as u8),
+            in_shadow,
+        };
+        if self.mirrored {
+            Decision::Mirrored(seen)
+        } else {
+            Decision::Solid(seen)
+        }
+    }
+
+    fn sphere<'f>(
+        &self,
+        number: usize,
+        sphere: &Sphere<Bounded>,
+        outline: &Ellipse,
+        parts: &mut Builder<'f, '_>,
+    ) -> Body<'f> {
+        let arena = parts.arena;
+        let mut paint = |in_shadow| parts.paints.of(self.decision(number, None, in_shadow));
+        if self.picture.stage == Stage::Spheres {
+            return Body::Flat(paint(false));
+        }
+        let floor = self.picture.floor.as_ref().filter(|_| self.mirrored);
+        let mirror = floor.and_then(|floor| floor.mirror.as_ref());
+        let own = self.picture.solid_color(number);
+        let own = mirror.map_or(own, |mirror| own * mirror.reflectance);
+        let lighting = self
+            .lighting
+            .get_or_init(|| Lighting::new(&self.view.shading));
+        let row_sphere = RowSphere::new(sphere, outline, lighting, own, self.shadows);
+        let casters = if self.shadows {
+            let facts = self.picture.scene.facts();
+            let solids = &facts.casters[number];
+            let solids = casters_on(&row_sphere, number, self.view, lighting, solids, arena);
+            let surface = self.surface.on_sphere(number, &row_sphere, lighting, arena);
+            collect(arena, solids.chain(surface))
+        } else {
+            &[]
+        };
+        parts.shaded_spheres += 1;
+        Body::Sphere(arena.alloc(ShadedSphere {
+            number: parts.shaded_spheres - 1,
+            sphere: row_sphere,
+            casters,
+            lit: self.decision(number, None, false),
+            in_shadow: paint(self.shadows),
+        }))
+    }
+
+    fn facets<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+        let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
+        let t = &self.view.tetrahedra[solid.number - self.view.spheres.len()];
+        let mut facets = Growing::with_capacity_in(solid.facets.len(), arena);
+        for (face, plane) in solid.facets {
+            let turned_away = self.shadows && t.solid.turned_away(*face);
+            let shadows = if self.shadows && !turned_away {
+                self.shadows_on_facet(solid.number, plane, parts)
+            } else {
+                Growing::new_in(arena)
+            };
+            let mut paint = |in_shadow| {
+                let decision = self.decision(solid.number, Some(*face), in_shadow);
+                parts.paints.of(decision)
+            };
+            facets.push(Facet {
+                lit: paint(false),
+                in_shadow: paint(self.shadows),
+                turned_away,
+                shadows: parts.edges.add_receiver(shadows, rows),
+            });
+        }
+        let place = |face: usize| solid.facets.iter().position(|(other, _)| *other == face);
+        let screen = screen_plane(grid);
+        let pairs = t.solid.entered_pairs(&t.from_eye);
+        let pairs = pairs.filter_map(|(i, j, first)| {
+            let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
+            let crease = Region::new(crease, None, grid).within(rows);
+            Some(Pair {
+                facets: (place(i)?, place(j)?),
+                first: parts.edges.add(crease, Edge::Crease),
+            })
+        });
+        let pairs = collect(arena, pairs);
+        Body::Facets(facets.into_bump_slice(), pairs)
+    }
+
+    /// The shadows that may fall on a facet.
+    fn shadows_on_facet<'f>(
+        &self,
+        number: usize,
+        plane: &PixelPlane,
+        parts: &Builder<'f, '_>,
+    ) -> Growing<'f, Region<'f>> {
+        let (arena, grid) = (parts.arena, parts.grid);
+        let casters = self.picture.scene.facts().casters[number].iter().copied();
+        let solids = shadows_on(plane, self.view, casters, |_| false, grid, arena);
+        let surface = self.surface.on_plane(number, plane, grid, arena);
+        let mut shadows = Growing::new_in(arena);
+        shadows.extend(solids.chain(surface));
+        shadows
+    }
+}

@@ -1,0 +1,224 @@
+//! Hidden-surface culling: in which rows a solid, a shadow or a mirror image can be seen at all.
+//!
+//! The screen is cut into tiles. A solid whose outline covers a tile hides, in that tile, whatever
+//! lies behind the farthest point that eye rays enter it at. What is hidden in all tiles that it
+//! reaches brings no edge. This decides nothing about pixels, so it need not be sharp; it must
+//! never hide what is seen.
+
+use bumpalo::Bump;
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::tracer::scanline::edges::region::Region;
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
+use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
+
+/// How many tiles lie side by side, and how many on top of each other where tiles are no lower
+/// than the rows that are crossed at once.
+const ACROSS: u32 = 16;
+const UP: u32 = 64;
+
+/// Rows, from the first to before the last.
+pub(crate) type Rows = (u32, u32);
+
+/// The tiles of a screen, each with a depth behind which nothing is seen.
+pub(crate) struct Tiles<'f> {
+    grid: Grid,
+    level: Level,
+    /// Columns and rows of a tile.
+    width: u32,
+    height: u32,
+    /// From the left, rows of tiles from the bottom.
+    seen_before: &'f mut [f64],
+    across: u32,
+}
+
+/// The columns that a region may have in some rows, and those that it has in all of them.
+struct Run {
+    possible: Columns,
+    certain: Columns,
+}
+
+impl<'f> Tiles<'f> {
+    /// Tiles in which everything is seen.
+    pub(crate) fn new(grid: Grid, level: Level, arena: &'f Bump) -> Self {
+        let rows = ROWS as u32;
+        let width = grid.size.div_ceil(ACROSS).max(rows);
+        let height = grid.size.div_ceil(UP).next_multiple_of(rows);
+        let (across, up) = (grid.size.div_ceil(width), grid.size.div_ceil(height));
+        Tiles {
+            grid,
+            level,
+            width,
+            height,
+            seen_before: arena.alloc_slice_fill_copy((across * up) as usize, f64::INFINITY),
+            across,
+        }
+    }
+
+    fn up(&self) -> u32 {
+        self.seen_before.len() as u32 / self.across
+    }
+
+    fn number(&self, across: u32, up: u32) -> usize {
+        (up * self.across + across) as usize
+    }
+
+    /// The rows of tiles that rows lie in.
+    fn rows_of_tiles(&self, (from, to): Rows) -> std::ops::Range<u32> {
+        from / self.height..to.div_ceil(self.height).min(self.up())
+    }
+
+    /// The rows and columns of a tile.
+    fn of(&self, across: u32, up: u32) -> (Columns, Rows) {
+        let ends = |number: u32, length: u32| {
+            let from = number * length;
+            (from, (from + length).min(self.grid.size))
+        };
+        (ends(across, self.width), ends(up, self.height))
+    }
+
+    fn rectangle(&self, across: u32, up: u32) -> Rectangle {
+        let (columns, rows) = self.of(across, up);
+        let ends = |(from, to): (u32, u32)| [from, to - 1].map(|number| self.grid.place(number));
+        Rectangle {
+            x: ends(columns),
+            y: ends(rows),
+        }
+    }
+
+    /// The columns of a region in a row of tiles.
+    fn run(&self, region: &Region<'_>, up: u32) -> Run {
+        dispatch!(self.level, simd => self.run_with(simd, region, up))
+    }
+
+    #[inline(always)]
+    fn run_with<S: Simd>(&self, simd: S, region: &Region<'_>, up: u32) -> Run {
+        let (_, (from, to)) = self.of(0, up);
+        let mut run = Run {
+            possible: (self.grid.size, 0),
+            certain: (0, self.grid.size),
+        };
+        for first in (from..to).step_by(ROWS) {
+            let spans = region.cross(simd, first, self.grid);
+            for row in 0..((to - first) as usize).min(ROWS) {
+                let ends = |ends: &[[u32; ROWS]; 2]| (ends[0][row], ends[1][row]);
+                let (possible, certain) = (ends(&spans.possible), ends(&spans.certain));
+                if spans.filled >> row & 1 == 0 {
+                    run.certain = (0, 0);
+                    continue;
+                }
+                run.possible.0 = run.possible.0.min(possible.0);
+                run.possible.1 = run.possible.1.max(possible.1);
+                run.certain.0 = run.certain.0.max(certain.0);
+                run.certain.1 = run.certain.1.min(certain.1);
+            }
+        }
+        run
+    }
+
+    /// Which tiles of a row a run of columns reaches, and which of them it covers.
+    fn reached(&self, (from, to): Columns) -> std::ops::Range<u32> {
+        if from < to {
+            from / self.width..to.div_ceil(self.width)
+        } else {
+            0..0
+        }
+    }
+
+    fn covered(&self, (from, to): Columns) -> std::ops::Range<u32> {
+        let end = if to == self.grid.size {
+            self.across
+        } else {
+            to / self.width
+        };
+        from.div_ceil(self.width)..end
+    }
+
+    /// Hides what is behind a solid in the tiles that its outline covers.
+    pub(crate) fn hide_behind(&mut self, outline: &Region<'_>, depth: &Depth<'_>) {
+        for up in self.rows_of_tiles(outline.rows()) {
+            let run = self.run(outline, up);
+            for across in self.covered(run.certain) {
+                let (_, most) = depth.bounds(None, self.rectangle(across, up));
+                let before = &mut self.seen_before[(up * self.across + across) as usize];
+                *before = before.min(most);
+            }
+        }
+    }
+
+    /// The rows in which a solid can be seen: between the first tile and the last in which not all
+    /// of it is hidden.
+    pub(crate) fn rows_of_solid(&self, outline: &Region<'_>, depth: &Depth<'_>) -> Rows {
+        self.rows_where(outline, |across, up| {
+            let (least, _) = depth.bounds(None, self.rectangle(across, up));
+            // Where the depth is no number, it is seen.
+            let is_hidden = least > self.seen_before[self.number(across, up)];
+            !is_hidden
+        })
+    }
+
+    /// The rows of a region between the first tile and the last in which something holds.
+    fn rows_where(&self, region: &Region<'_>, holds: impl Fn(u32, u32) -> bool) -> Rows {
+        let is_seen = |up: &u32| {
+            let run = self.run(region, *up);
+            self.reached(run.possible).any(|across| holds(across, *up))
+        };
+        let mut tiles = self.rows_of_tiles(region.rows());
+        let first = tiles.find(is_seen);
+        let Some(first) = first else {
+            return (0, 0);
+        };
+        let last = tiles.rfind(is_seen).unwrap_or(first);
+        let (from, to) = region.rows();
+        let (_, (begin, _)) = self.of(0, first);
+        let (_, (_, end)) = self.of(0, last);
+        (from.max(begin), to.min(end))
+    }
+
+    /// The tiles in which a region may be seen that is no nearer than a depth at each Y: in those,
+    /// everything is seen; in all others, nothing.
+    pub(crate) fn seen_through(
+        &self,
+        region: &Region<'_>,
+        least: impl Fn(f64) -> f64,
+        arena: &'f Bump,
+    ) -> Tiles<'f> {
+        let tiles = Tiles::new(self.grid, self.level, arena);
+        tiles.seen_before.fill(f64::NEG_INFINITY);
+        for up in self.rows_of_tiles(region.rows()) {
+            let run = self.run(region, up);
+            for across in self.reached(run.possible) {
+                let [low, high] = self.rectangle(across, up).y;
+                let number = self.number(across, up);
+                let is_hidden = least(low).min(least(high)) > self.seen_before[number];
+                if !is_hidden {
+                    tiles.seen_before[number] = f64::INFINITY;
+                }
+            }
+        }
+        tiles
+    }
+
+    /// Leaves out the rows in which shadows on one receiver make no difference: a tile that one of
+    /// them covers needs no other.
+    pub(crate) fn restrict_shadows(&self, shadows: &mut [Region<'_>], arena: &Bump) {
+        let covering = arena.alloc_slice_fill_copy(self.seen_before.len(), u32::MAX);
+        for (shadow, region) in shadows.iter().enumerate() {
+            for up in self.rows_of_tiles(region.rows()) {
+                for across in self.covered(self.run(region, up).certain) {
+                    let first = &mut covering[self.number(across, up)];
+                    *first = (*first).min(shadow as u32);
+                }
+            }
+        }
+        for (shadow, region) in shadows.iter_mut().enumerate() {
+            let rows = self.rows_where(region, |across, up| {
+                let number = self.number(across, up);
+                let first = covering[number];
+                self.seen_before[number] > f64::NEG_INFINITY
+                    && (first == u32::MAX || first == shadow as u32)
+            });
+            region.restrict(rows);
+        }
+    }
+}

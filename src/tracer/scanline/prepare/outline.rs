@@ -1,0 +1,138 @@
+//! The solids of a view, before it is known what of them is seen.
+
+use bumpalo::Bump;
+
+use crate::number::Bounded;
+use crate::scene::Side;
+use crate::stage::Stage;
+use crate::tracer::arena::collect;
+use crate::tracer::extent::Extent;
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::region::Region;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::culling::Tiles;
+use crate::tracer::scanline::prepare::depth::{Depth, FacetDepth, face_plane, screen_plane};
+use crate::tracer::view::View;
+
+/// A solid as eye rays meet it.
+pub(crate) struct Outlined<'f> {
+    /// Its number among all of the scene.
+    pub(crate) number: usize,
+    pub(crate) side: Side,
+    pub(crate) outline: Region<'f>,
+    pub(crate) depth: Depth<'f>,
+    /// Of a tetrahedron, its faces that eye rays enter, and their planes.
+    pub(crate) facets: &'f [(usize, PixelPlane)],
+}
+
+/// The solids that are seen directly, or in the mirror, within an extent of the screen.
+pub(crate) struct Outlines<'f> {
+    pub(crate) mirrored: bool,
+    pub(crate) all: bumpalo::collections::Vec<'f, Outlined<'f>>,
+    /// How many pixels their extents have.
+    area: u64,
+}
+
+impl<'f> Outlines<'f> {
+    /// Those of a view; of one in the mirror, `within` the extent of what mirrors it.
+    pub(crate) fn new(
+        picture: &Picture<'_, Bounded>,
+        view: &View<'_, Bounded>,
+        within: Option<&Extent>,
+        grid: Grid,
+        arena: &'f Bump,
+    ) -> Self {
+        let (facts, stage) = (picture.scene.facts(), picture.stage);
+        let mirrored = within.is_some();
+        let spheres = view.spheres.len();
+        let count = spheres + view.tetrahedra.len();
+        let numbers = match stage {
+            Stage::Spheres => 0..spheres,
+            Stage::Tetrahedron => spheres..count,
+            _ => 0..count,
+        };
+        let mut outlines = Outlines {
+            mirrored,
+            all: bumpalo::collections::Vec::new_in(arena),
+            area: 0,
+        };
+        for number in numbers {
+            let (side, extent) = (facts.sides[number], &view.extents[number]);
+            let (mut first, mut end) = extent.rows(grid.size);
+            if let Some(within) = within {
+                let rows = within.rows(grid.size);
+                (first, end) = (first.max(rows.0), end.min(rows.1));
+            }
+            let area = extent.area(grid.size);
+            let is_seen = area > 0
+                // What lies inside of another solid hides behind that, where both take part.
+                && !(facts.hidden[number] && stage >= Stage::Shading)
+                // Below the surface nothing is mirrored.
+                && !(mirrored && side == Side::Below)
+                && within.is_none_or(|within| extent.meets(within));
+            if !is_seen {
+                continue;
+            }
+            outlines.area += area;
+            let rows = (first, end);
+            outlines.all.push(match view.spheres.get(number) {
+                Some(sphere) => {
+                    let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
+                    Outlined {
+                        number,
+                        side,
+                        depth: Depth::of_sphere(sphere.center, &ellipse, sphere.support, grid),
+                        outline: Region::new(&[], Some(ellipse), grid).within(rows),
+                        facets: &[],
+                    }
+                }
+                None => {
+                    let t = &view.tetrahedra[number - spheres];
+                    let screen = screen_plane(grid);
+                    let met = t.solid.met(&t.from_eye);
+                    let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));
+                    let faces = t.from_eye.entered();
+                    let facets = faces.map(|face| (face, face_plane(t.solid.plane(face), grid)));
+                    let mut depths = bumpalo::collections::Vec::<FacetDepth>::new_in(arena);
+                    let facets = facets.map(|(face, (plane, depth))| {
+                        depths.push(depth);
+                        (face, plane)
+                    });
+                    let facets = collect(arena, facets);
+                    Outlined {
+                        number,
+                        side,
+                        outline: Region::new(collect(arena, met), None, grid).within(rows),
+                        depth: Depth::Facets(depths.into_bump_slice()),
+                        facets,
+                    }
+                }
+            });
+        }
+        outlines
+    }
+
+    /// Whether so many lie one behind the other that it pays to look which are hidden.
+    pub(crate) fn are_deep(&self, grid: Grid) -> bool {
+        self.area > 4 * u64::from(grid.size) * u64::from(grid.size)
+    }
+
+    /// Leaves out what is hidden in all tiles. What it leaves hides what is behind it there.
+    pub(crate) fn cull(&mut self, tiles: &mut Tiles<'_>) {
+        for solid in &self.all {
+            // What the surface mirrors begins there, and that of a solid which goes through it may
+            // not be met.
+            if !self.mirrored || solid.side == Side::Above {
+                tiles.hide_behind(&solid.outline, &solid.depth);
+            }
+        }
+        for solid in &mut self.all {
+            let rows = tiles.rows_of_solid(&solid.outline, &solid.depth);
+            solid.outline.restrict(rows);
+        }
+        self.all.retain(|solid| !solid.outline.is_nowhere());
+    }
+}

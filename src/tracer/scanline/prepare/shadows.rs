@@ -1,0 +1,181 @@
+//! What throws shadows on planes and on spheres: other solids, and the surface.
+
+use std::cell::LazyCell;
+use std::cmp::Ordering;
+
+use bumpalo::Bump;
+
+use crate::number::{Bounded, Real};
+use crate::scene::Side;
+use crate::tracer::arena::collect;
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::Lines;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::region::Region;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
+use crate::tracer::scanline::shade::light::Lighting;
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+use crate::tracer::surface::Surface;
+use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::vector::Vector;
+use crate::tracer::view::View;
+
+/// The surface as it keeps light from the solids of a view.
+pub(crate) struct SurfaceShadow<'p> {
+    surface: Option<&'p Surface<Bounded>>,
+    sides: &'p [Side],
+    to_light: Vector<Bounded>,
+    /// The sign of how it rises: in the mirror light comes from below where it comes from above.
+    climb: Ordering,
+    mirrored: bool,
+}
+
+impl<'p> SurfaceShadow<'p> {
+    pub(crate) fn new(
+        picture: &'p Picture<'_, Bounded>,
+        view: &View<'_, Bounded>,
+        mirrored: bool,
+    ) -> Self {
+        let rise = -picture.scene.light().direction.y;
+        let rise = if mirrored { -rise } else { rise };
+        SurfaceShadow {
+            surface: picture.floor.as_ref().map(|floor| &floor.surface),
+            sides: &picture.scene.facts().sides,
+            to_light: view.shading.to_light.vector,
+            climb: rise.partial_cmp(&0.0).unwrap_or(Ordering::Equal),
+            mirrored,
+        }
+    }
+
+    /// The half-spaces that its shadow on a solid lies in, if any point of that can be in it.
+    fn on(&self, solid: usize) -> Option<impl Iterator<Item = HalfSpace<Bounded>>> {
+        let toward = match self.sides[solid] {
+            Side::Above => Some(Ordering::Less),
+            Side::Below => Some(Ordering::Greater),
+            Side::Across => None,
+        };
+        // A reflected solid is on the other side.
+        let toward = toward.map(|toward| {
+            if self.mirrored {
+                toward.reverse()
+            } else {
+                toward
+            }
+        });
+        let may = toward.is_none_or(|toward| self.climb == toward || self.climb.is_eq());
+        let surface = self.surface.filter(|_| may)?;
+        Some(surface.shadow(self.to_light, self.climb))
+    }
+
+    /// As a caster on a sphere.
+    pub(crate) fn on_sphere<'f>(
+        &self,
+        solid: usize,
+        row_sphere: &RowSphere,
+        lighting: &Lighting,
+        arena: &'f Bump,
+    ) -> Option<Caster<'f>> {
+        let forms = self.on(solid)?;
+        let forms = forms.map(|half_space| row_sphere.inside(&half_space, lighting));
+        let unknown = self.climb.is_eq().then_some(LinearForm::UNKNOWN);
+        Some(Caster::Polyhedron(collect(arena, forms.chain(unknown))))
+    }
+
+    /// As a region of the pixels that stand for points of a plane.
+    pub(crate) fn on_plane<'f>(
+        &self,
+        solid: usize,
+        plane: &PixelPlane,
+        grid: Grid,
+        arena: &'f Bump,
+    ) -> Option<Region<'f>> {
+        let planes = self.on(solid)?;
+        let planes = planes.map(|half_space| HalfPlane::of(&half_space, plane, grid));
+        let unknown = self.climb.is_eq().then_some(HalfPlane::UNKNOWN);
+        Some(Region::new(
+            collect(arena, planes.chain(unknown)),
+            None,
+            grid,
+        ))
+    }
+}
+
+/// The pixels whose points on a plane are in the shadows of `casters`. Of a caster that `is_ahead`
+/// of all the plane's pixels it is not asked whether it is.
+pub(crate) fn shadows_on<'f>(
+    plane: &PixelPlane,
+    view: &View<'_, Bounded>,
+    casters: impl Iterator<Item = u16>,
+    is_ahead: impl Fn(usize) -> bool,
+    grid: Grid,
+    arena: &'f Bump,
+) -> impl Iterator<Item = Region<'f>> {
+    let to_light = view.shading.to_light;
+    let lines = LazyCell::new(move || Lines::new(plane, to_light));
+    let shape = move |caster: u16| {
+        let caster = usize::from(caster);
+        let is_ahead = is_ahead(caster);
+        match view.spheres.get(caster) {
+            Some(sphere) => {
+                let before = (!is_ahead).then(|| HalfSpace {
+                    normal: -to_light.vector,
+                    at: sphere.center,
+                    closed: false,
+                    border: None,
+                });
+                let before = before
+                    .iter()
+                    .map(|half_space| HalfPlane::of(half_space, plane, grid));
+                let ellipse = lines.meet((sphere.center, sphere.radius), grid);
+                Region::new(collect(arena, before), Some(ellipse), grid)
+            }
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
+                let planes = if is_ahead {
+                    collect(arena, t.solid.met(&t.from_light).map(plane))
+                } else {
+                    collect(arena, t.solid.ahead(&t.from_light).map(plane))
+                };
+                Region::new(planes, None, grid)
+            }
+        }
+    };
+    casters.map(shape)
+}
+
+/// What may shade the pixels of a sphere.
+pub(crate) fn casters_on<'f>(
+    row_sphere: &RowSphere,
+    index: usize,
+    view: &View<'_, Bounded>,
+    lighting: &Lighting,
+    casters: &[u16],
+    arena: &'f Bump,
+) -> impl Iterator<Item = Caster<'f>> {
+    let to_light = view.shading.to_light;
+    let own = view.spheres[index].support;
+    let beside = LazyCell::new(|| row_sphere.beside(lighting));
+    casters.iter().filter_map(move |&caster| {
+        let caster = usize::from(caster);
+        match view.spheres.get(caster) {
+            // A ray leaves its own sphere, also where that is listed twice.
+            Some(sphere) if sphere.support == own => None,
+            Some(sphere) => {
+                let (moment, before) = row_sphere.around(sphere.center, &to_light, &beside);
+                let reach = to_light.squared_length * sphere.radius.squared();
+                Some(Caster::Sphere(
+                    arena.alloc(ShadowCylinder::new(before, moment, reach)),
+                ))
+            }
+            None => {
+                let t = &view.tetrahedra[caster - view.spheres.len()];
+                let ahead = t.solid.ahead(&t.from_light);
+                let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
+                Some(Caster::Polyhedron(collect(arena, forms)))
+            }
+        }
+    })
+}
