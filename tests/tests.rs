@@ -18,6 +18,7 @@ mod command_line;
 mod commit;
 #[cfg(feature = "program")]
 mod compare;
+mod crowds;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod drivers;
 #[cfg(feature = "program")]
