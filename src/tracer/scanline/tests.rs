@@ -5,12 +5,13 @@
 
 use fearless_simd::Level;
 
+use super::prepare::solids::Body;
 use super::visibility::visible::{DepthTests, Shown, Visible};
 use super::{Precision, RowTracer, Scratch, Settled, visible};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
-use crate::tracer::decision::Decision;
+use crate::tracer::decision::{Decision, Seen};
 use crate::tracer::ladder::{Ladder, Lines, Pixels as _, Rung};
 
 const SCENES: [&str; 6] = [
@@ -92,6 +93,19 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     }
 }
 
+/// The same decision where it is not in shadow.
+fn lit(decision: Decision) -> Decision {
+    let lit = |seen: Seen| Seen {
+        in_shadow: false,
+        ..seen
+    };
+    match decision {
+        Decision::Solid(seen) => Decision::Solid(lit(seen)),
+        Decision::Mirrored(seen) => Decision::Mirrored(lit(seen)),
+        other => other,
+    }
+}
+
 #[test]
 fn spans_kept_from_row_to_row_are_spans_computed_anew() {
     let size = 61;
@@ -150,12 +164,11 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                             }
                             (
                                 Shown::Sphere { mirrored, solid },
-                                Decision::Solid(seen) | Decision::Mirrored(seen),
+                                Decision::Solid(_) | Decision::Mirrored(_),
                             ) => {
                                 let solids = tracer.frame.solids(mirrored).solids;
-                                let is_mirrored = matches!(decision, Decision::Mirrored(_));
-                                let number = solids[solid as usize].number;
-                                mirrored == is_mirrored && number == usize::from(seen.solid)
+                                let body = &solids[solid as usize].body;
+                                matches!(body, Body::Sphere(sphere) if sphere.lit == lit(decision))
                             }
                             (Shown::Sphere { .. }, _) => false,
                         };

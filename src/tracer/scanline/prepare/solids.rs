@@ -26,9 +26,6 @@ pub(crate) struct Solids<'f> {
 
 /// One of them.
 pub(crate) struct Solid<'f> {
-    /// Its number among all of the scene.
-    #[cfg(test)]
-    pub(crate) number: usize,
     pub(crate) side: Side,
     pub(crate) depth: Depth<'f>,
     pub(crate) body: Body<'f>,
@@ -78,8 +75,6 @@ impl<'f> Solids<'f> {
             };
             parts.edges.add(solid.outline, edge);
             solids.push(Solid {
-                #[cfg(test)]
-                number: solid.number,
                 side: solid.side,
                 depth: solid.depth,
                 body,
