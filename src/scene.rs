@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 
+pub(crate) use casters::SurfaceCasters;
 pub(crate) use exact::{Facts, Side, Support};
 pub use file::{MAX_SOLIDS, SceneError};
 

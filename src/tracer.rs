@@ -6,6 +6,7 @@
 //!
 //! - `frame`, `view`: the scene turned by α and measured in pixels, and its mirror image;
 //! - `line`, `sphere`, `tetrahedron`, `surface`: a ray and what it meets; `shading`: equation 4-1;
+//! - `extent`, `surface_casters`: which solids a pixel need not be asked about;
 //! - `pixel`: what a pixel shows, from these: the definition of the picture;
 //! - `ladder`: the same asked of f64 with bounds, then of double-doubles, then of arbitrary
 //!   precision;
@@ -36,6 +37,7 @@ mod simd;
 mod sphere;
 mod stream;
 mod surface;
+mod surface_casters;
 mod target;
 mod tetrahedron;
 mod vector;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::casters::casters;
+use super::casters::{SurfaceCasters, casters};
 use super::hidden::hidden;
 use super::rational::{Plane, cross, dot, exact, minus, sign};
 use super::{Sphere, Surface, Tetrahedron};
@@ -44,6 +44,8 @@ pub(crate) struct Facts {
     /// For each solid, spheres first, the others that may stand between a point of it and the
     /// light; of hidden ones nobody asks.
     pub(crate) casters: Vec<Vec<u16>>,
+    /// The solids that may stand between a point of the surface and the light.
+    pub(crate) surface_casters: Option<SurfaceCasters>,
 }
 
 /// Where a solid is, seen from the surface's plane, which belongs to both sides.
@@ -109,6 +111,8 @@ impl Facts {
             .collect();
         let hidden = hidden(spheres, tetrahedra);
         let casters = casters(spheres, tetrahedra, -direction, &hidden);
+        let surface_casters = surface
+            .map(|surface| SurfaceCasters::new(spheres, tetrahedra, surface, -direction, &hidden));
 
         let mut same_spheres = HashMap::new();
         let spheres = spheres.iter().map(|sphere| {
@@ -156,6 +160,7 @@ impl Facts {
             sides,
             hidden,
             casters,
+            surface_casters,
         }
     }
 }

@@ -6,6 +6,7 @@ use bumpalo::Bump;
 
 use super::arena::collect;
 use super::frame::{Frame, reflect};
+use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::Scene;
@@ -17,11 +18,98 @@ pub(super) struct Extent {
     rows: RangeInclusive<i64>,
 }
 
-/// The extents of a frame: of every solid, of every solid in the mirror, and of the surface.
+/// The extents of a frame: of every solid, of every solid in the mirror, and of the surface; and
+/// what may shade that.
 pub(super) struct Extents<'f> {
-    pub(super) direct: &'f [Extent],
-    pub(super) mirrored: &'f [Extent],
+    pub(super) direct: ExtentsOfSolids<'f>,
+    pub(super) mirrored: ExtentsOfSolids<'f>,
     pub(super) surface: Option<Extent>,
+    pub(super) casters_on_surface: Option<CastersOnSurface<'f>>,
+}
+
+/// The extents of all solids, and which of them reach each tile of the screen.
+#[derive(Clone, Copy)]
+pub(super) struct ExtentsOfSolids<'f> {
+    all: &'f [Extent],
+    /// Pixels along a side of a tile.
+    side: u32,
+    across: u32,
+    /// Where each tile's solids begin, and where the last one's end.
+    starts: &'f [u32],
+    solids: &'f [u16],
+}
+
+/// Tiles side by side, where there are so many solids that a pixel is not asked about all of them.
+const TILES: u32 = 32;
+const FEW: usize = 16;
+
+impl<'f> ExtentsOfSolids<'f> {
+    const NONE: ExtentsOfSolids<'static> = ExtentsOfSolids {
+        all: &[],
+        side: 1,
+        across: 1,
+        starts: &[],
+        solids: &[],
+    };
+
+    fn new(all: &'f [Extent], size: u32, arena: &'f Bump) -> Self {
+        let tiles = if all.len() > FEW { TILES } else { 1 };
+        let side = size.div_ceil(tiles);
+        let across = size.div_ceil(side);
+        let reached = |extent: &Extent| {
+            let tiles = |(from, to): (u32, u32)| {
+                if from < to {
+                    from / side..to.div_ceil(side)
+                } else {
+                    0..0
+                }
+            };
+            let (columns, rows) = (tiles(extent.columns(size)), tiles(extent.rows(size)));
+            rows.flat_map(move |row| {
+                columns
+                    .clone()
+                    .map(move |column| (row * across + column) as usize)
+            })
+        };
+        let starts = arena.alloc_slice_fill_copy((across * across) as usize + 1, 0);
+        for tile in all.iter().flat_map(reached) {
+            starts[tile] += 1;
+        }
+        let mut end = 0;
+        for start in &mut *starts {
+            end += *start;
+            *start = end;
+        }
+        let solids = arena.alloc_slice_fill_copy(end as usize, 0);
+        // Each tile is filled from its end, so that its solids come in their order.
+        for (solid, extent) in all.iter().enumerate().rev() {
+            for tile in reached(extent) {
+                starts[tile] -= 1;
+                solids[starts[tile] as usize] = solid as u16;
+            }
+        }
+        ExtentsOfSolids {
+            all,
+            side,
+            across,
+            starts,
+            solids,
+        }
+    }
+
+    /// Where a solid can be seen.
+    pub(super) fn of(&self, solid: usize) -> &'f Extent {
+        &self.all[solid]
+    }
+
+    /// The solids that can be seen in a pixel, in their order.
+    pub(super) fn at(&self, (column, row): (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
+        let tile = (row / self.side * self.across + column / self.side) as usize;
+        let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
+        let (all, solids) = (self.all, &self.solids[range]);
+        let solids = solids.iter().map(|solid| usize::from(*solid));
+        solids.filter(move |solid| all[*solid].holds(column, row))
+    }
 }
 
 impl Extent {
@@ -94,7 +182,12 @@ fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
 }
 
 impl<'f> Extents<'f> {
-    pub(super) fn new(scene: &Scene, frame: &Frame<Bounded>, size: u32, arena: &'f Bump) -> Self {
+    pub(super) fn new(
+        scene: &'f Scene,
+        frame: &Frame<Bounded>,
+        size: u32,
+        arena: &'f Bump,
+    ) -> Self {
         let solids = |mirror: Option<Bounded>| {
             let place = |point| reflect(frame.place(point), mirror);
             // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
@@ -108,7 +201,8 @@ impl<'f> Extents<'f> {
                 .tetrahedra()
                 .iter()
                 .map(|t| Extent::of(&t.vertices.map(place), none, none, size));
-            collect(arena, spheres.chain(tetrahedra))
+            let all = collect(arena, spheres.chain(tetrahedra));
+            ExtentsOfSolids::new(all, size, arena)
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
@@ -124,12 +218,13 @@ impl<'f> Extents<'f> {
         let mirrored = if mirror.is_some() {
             solids(mirror)
         } else {
-            &[]
+            ExtentsOfSolids::NONE
         };
         Extents {
             direct: solids(None),
             mirrored,
             surface,
+            casters_on_surface: CastersOnSurface::new(scene, frame, size),
         }
     }
 }

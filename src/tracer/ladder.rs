@@ -58,7 +58,7 @@ struct Basis<'f> {
 }
 
 impl<'f> Basis<'f> {
-    fn new(scene: &Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
+    fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
         let bounded = frame::<Bounded>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
         let bearings = |mirrored| {

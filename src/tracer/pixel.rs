@@ -11,6 +11,7 @@ use super::extent::{Extent, Extents};
 use super::frame::{Frame, looking};
 use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
+use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use super::view::{FrameBearings, Reach, Solids, View};
 use crate::number::{Real, all, any};
@@ -32,6 +33,7 @@ pub(super) struct Floor<'f, R> {
     pub(super) surface: Surface<R>,
     /// Where it can be seen.
     pub(super) extent: Extent,
+    casters: CastersOnSurface<'f>,
     color: Vector<R>,
     /// (N/2) · height.
     pub(super) height_in_pixels: R,
@@ -66,11 +68,13 @@ impl<'f, R: Real> Picture<'f, R> {
         extents: &Extents<'f>,
         room: &impl Room<'f>,
     ) -> Self {
-        let floor = match (scene.surface(), frame.surface(scene), &extents.surface) {
-            (Some(described), Some(surface), Some(extent)) if stage >= Stage::Shadow => {
+        let seen = extents.surface.as_ref().zip(extents.casters_on_surface);
+        let floor = match (scene.surface(), frame.surface(scene), seen) {
+            (Some(described), Some(surface), Some((extent, casters))) if stage >= Stage::Shadow => {
                 Some(Floor {
                     surface,
                     extent: extent.clone(),
+                    casters,
                     color: Vector::exact(described.color),
                     height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
                     mirror: bearings.mirrored.as_ref().map(|bearings| Mirror {
@@ -235,9 +239,10 @@ impl<'f, R: Real> Picture<'f, R> {
     /// The surface where it is seen: in shadow, mirroring, or plain.
     fn surface_at(&self, floor: &Floor<'_, R>, pixel: (u32, u32), point: Vector<R>) -> Decided<R> {
         let leaves = floor.surface.support;
+        let to_light = self.view.ray_to_light(point, leaves);
         if self
             .view
-            .is_shadowed(&self.view.ray_to_light(point, leaves))?
+            .is_shadowed_by(floor.casters.at(pixel), &to_light)?
         {
             return Ok((Decision::SurfaceInShadow, None));
         }

@@ -9,6 +9,7 @@ use crate::number::{Real, all};
 use crate::scene::Support;
 
 /// The square in view space: turned about y with the view, but always level.
+#[derive(Clone, Copy)]
 pub(super) struct Surface<R> {
     pub(super) height: R,
     pub(super) half_width: R,
@@ -19,7 +20,7 @@ pub(super) struct Surface<R> {
 
 impl<R: Real> Surface<R> {
     /// The coordinates along the square's sides of a level vector.
-    fn along_sides(&self, v: Vector<R>) -> [R; 2] {
+    pub(super) fn along_sides(&self, v: Vector<R>) -> [R; 2] {
         [
             v.x * self.cos + v.z * self.sin,
             v.z * self.cos - v.x * self.sin,

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 use bumpalo::Bump;
 
 use super::arena::Room;
-use super::extent::Extent;
+use super::extent::ExtentsOfSolids;
 use super::frame::{Frame, looking, reflect};
 use super::line::{Hit, Line, Normal};
 use super::shading::{Shading, halfway};
@@ -122,7 +122,7 @@ impl<'f> FrameBearings<'f> {
 /// All solids and the light, turned, scaled, and for the mirror reflected.
 pub(super) struct View<'f, R> {
     /// Where each solid can be seen: spheres, then tetrahedra.
-    pub(super) extents: &'f [Extent],
+    pub(super) extents: ExtentsOfSolids<'f>,
     pub(super) spheres: &'f [Sphere<R>],
     pub(super) tetrahedra: &'f [TetrahedronInView<R>],
     pub(super) shading: Shading<R>,
@@ -156,7 +156,7 @@ impl<'f, R: Real> View<'f, R> {
         scene: &Scene,
         frame: &Frame<R>,
         bearings: &Bearings<'_>,
-        extents: &'f [Extent],
+        extents: ExtentsOfSolids<'f>,
         mirrored: bool,
         room: &impl Room<'f>,
     ) -> Self {
@@ -245,24 +245,29 @@ impl<'f, R: Real> View<'f, R> {
         solids: Solids,
         mut meet: impl FnMut(usize, Hit<R>) -> Result<(), R::Doubt>,
     ) -> Result<(), R::Doubt> {
-        let seen = |solid: usize| self.extents[solid].holds(pixel.0, pixel.1);
-        if solids != Solids::Tetrahedra {
-            for (solid, sphere) in self.spheres.iter().enumerate() {
-                if seen(solid) && (reach == Reach::Line || sphere.is_ahead(ray)?) {
-                    sphere
-                        .first_hit(ray)?
-                        .map_or(Ok(()), |hit| meet(solid, hit))?;
+        for solid in self.extents.at(pixel) {
+            let hit = match self.spheres.get(solid) {
+                Some(sphere) => {
+                    let takes_part = solids != Solids::Tetrahedra
+                        && (reach == Reach::Line || sphere.is_ahead(ray)?);
+                    if takes_part {
+                        sphere.first_hit(ray)?
+                    } else {
+                        None
+                    }
                 }
-            }
-        }
-        if solids != Solids::Spheres {
-            for (solid, t) in (self.spheres.len()..).zip(self.tetrahedra) {
-                if seen(solid) && (reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)?) {
-                    t.solid
-                        .first_hit(&t.from_eye, ray)?
-                        .map_or(Ok(()), |hit| meet(solid, hit))?;
+                None => {
+                    let t = &self.tetrahedra[solid - self.spheres.len()];
+                    let takes_part = solids != Solids::Spheres
+                        && (reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)?);
+                    if takes_part {
+                        t.solid.first_hit(&t.from_eye, ray)?
+                    } else {
+                        None
+                    }
                 }
-            }
+            };
+            hit.map_or(Ok(()), |hit| meet(solid, hit))?;
         }
         Ok(())
     }
@@ -286,42 +291,31 @@ impl<'f, R: Real> View<'f, R> {
     /// Every solid that stands between the ray's origin and the light.
     pub(super) fn shadowers(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
         let mut all = Vec::new();
-        for (solid, ahead) in self.each_ahead(ray).enumerate() {
-            if ahead? {
+        for solid in 0..self.spheres.len() + self.tetrahedra.len() {
+            if self.is_ahead(solid, ray)? {
                 all.push(solid);
             }
         }
         Ok(all)
     }
 
-    /// Whether each solid in turn stands between the ray's origin, which is in no solid's interior,
-    /// and the light.
-    fn each_ahead(&self, ray: &Line<R>) -> impl Iterator<Item = Result<bool, R::Doubt>> {
-        let spheres = self.spheres.iter().map(|sphere| sphere.is_ahead(ray));
-        spheres.chain(
-            self.tetrahedra
-                .iter()
-                .map(|t| t.solid.is_ahead(&t.from_light, ray)),
-        )
-    }
-
-    /// Whether any does.
-    pub(super) fn is_shadowed(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        any(self.each_ahead(ray))
+    /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the
+    /// light.
+    fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
+        match self.spheres.get(solid) {
+            Some(sphere) => sphere.is_ahead(ray),
+            None => {
+                let t = &self.tetrahedra[solid - self.spheres.len()];
+                t.solid.is_ahead(&t.from_light, ray)
+            }
+        }
     }
 
     /// Whether any of these does.
     pub(super) fn is_shadowed_by(&self, casters: &[u16], ray: &Line<R>) -> Result<bool, R::Doubt> {
-        any(casters.iter().map(|&caster| {
-            let caster = usize::from(caster);
-            match self.spheres.get(caster) {
-                Some(sphere) => sphere.is_ahead(ray),
-                None => {
-                    let t = &self.tetrahedra[caster - self.spheres.len()];
-                    t.solid.is_ahead(&t.from_light, ray)
-                }
-            }
-        }))
+        any(casters
+            .iter()
+            .map(|caster| self.is_ahead(usize::from(*caster), ray)))
     }
 
     /// The ray toward the light from a point of a sphere or plane, outward.

@@ -3,7 +3,7 @@
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::{Bounded, Real};
-use crate::scene::Side;
+use crate::scene::{Side, SurfaceCasters};
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::{self, Picture};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
@@ -65,7 +65,6 @@ impl<'f> Floor<'f> {
         let sides =
             sides.map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, grid));
         let scene = picture.scene;
-        let solids = scene.spheres().len() + scene.tetrahedra().len();
         let magnitude = height.value().abs() + grid.reach;
         // Rays that rise from the surface meet what is above it ahead. They may touch it at their
         // very beginning, but there the solid is seen, and not the surface.
@@ -79,8 +78,8 @@ impl<'f> Floor<'f> {
         let rows = floor.extent.rows(grid.size);
         let outline = Region::new(parts.arena.alloc(sides), None, grid).within(rows);
         let view = &picture.view;
-        let hidden = &scene.facts().hidden;
-        let casters = (0..solids as u16).filter(|caster| !hidden[usize::from(*caster)]);
+        let casters = scene.facts().surface_casters.as_ref();
+        let casters = casters.into_iter().flat_map(SurfaceCasters::all).copied();
         let thrown = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
         let mut shadows = Growing::new_in(parts.arena);
         shadows.extend(thrown.map(|shadow| shadow.within(rows)));

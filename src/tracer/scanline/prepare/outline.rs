@@ -60,7 +60,7 @@ impl<'f> Outlines<'f> {
             area: 0,
         };
         for number in numbers {
-            let (side, extent) = (facts.sides[number], &view.extents[number]);
+            let (side, extent) = (facts.sides[number], view.extents.of(number));
             let (mut first, mut end) = extent.rows(grid.size);
             if let Some(within) = within {
                 let rows = within.rows(grid.size);
