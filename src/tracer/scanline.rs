@@ -82,6 +82,9 @@ pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
 use write::row::Row;
 
+/// Where a pixel may show fewer solids, it does not pay to look which of them are hidden.
+const CULL_FROM: u64 = 4;
+
 /// A frame, ready to be traced row by row.
 pub(super) struct RowTracer<'f, P> {
     /// Asked for what is in doubt.
@@ -110,10 +113,21 @@ struct Shade {
 impl<'f, P: Lines> RowTracer<'f, P> {
     /// The frame that `pixels` are of.
     pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
+        RowTracer::culled_from(CULL_FROM, pixels, precision, level, arena)
+    }
+
+    /// The same, with what is hidden looked for where a pixel may show so many solids.
+    fn culled_from(
+        cull_from: u64,
+        pixels: &'f P,
+        precision: Precision,
+        level: Level,
+        arena: &'f Arena,
+    ) -> Self {
         let color = |decision| pixels.color(decision);
         RowTracer {
             pixels,
-            frame: Prepared::new(pixels.bounded(), &color, level, &arena.frame),
+            frame: Prepared::new(pixels.bounded(), &color, cull_from, level, &arena.frame),
             level,
             precision,
         }

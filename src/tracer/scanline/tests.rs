@@ -14,13 +14,43 @@ use crate::tracer::arena::Arena;
 use crate::tracer::decision::{Decision, Seen};
 use crate::tracer::ladder::{Ladder, Lines, Pixels as _, Rung};
 
-const SCENES: [&str; 6] = [
+/// All of the surface in the shadow of one sphere, and in those of others.
+const SHADOW_IN_SHADOW: &str = "# Shadows within a shadow
+surface = { height = -0.5, half_width = 10.0 }
+light = { direction = [0.0, -1.0, 0.0] }
+[[sphere]]
+center = [0.0, 30.0, 0.0]
+radius = 20.0
+color = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0.0, 0.0, 0.0]
+radius = 0.25
+color = [0.5, 0.25, 0.5]
+";
+
+/// A sphere mostly below the surface, whose part below is not mirrored, before mirror images.
+const BELOW_THE_MIRROR: &str = "# Mirror images behind what is not mirrored
+surface = { height = -0.25, half_width = 2.0 }
+light = { direction = [0.0, -1.0, -0.25] }
+[[sphere]]
+center = [0.0, -1.0, -0.25]
+radius = 0.875
+color = [0.5, 0.5, 0.5]
+[[sphere]]
+center = [0.0625, -0.125, -1.8125]
+radius = 0.0625
+color = [0.5, 0.25, 0.5]
+";
+
+const SCENES: [&str; 8] = [
     "",
     include_str!("../../../tests/scenes/crossing_spheres.toml"),
     include_str!("../../../tests/scenes/crossing_tetrahedra.toml"),
     include_str!("../../../tests/scenes/crowd.toml"),
     include_str!("../../../tests/scenes/light_from_below.toml"),
     include_str!("../../../tests/scenes/spheres_in_the_floor.toml"),
+    SHADOW_IN_SHADOW,
+    BELOW_THE_MIRROR,
 ];
 
 /// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
@@ -38,9 +68,13 @@ fn each_frame(size: u32, check: impl Fn(&str, &RowTracer<'_, Ladder<'_>>)) {
         ] {
             let arena = Arena::default();
             let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Double, &arena);
-            let tracer = RowTracer::new(&ladder, Precision::Bounded, Level::baseline(), &arena);
             let name = text.lines().next().unwrap_or("built-in");
-            check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
+            // What is hidden is looked for always, or never.
+            for cull_from in [0, u64::MAX] {
+                let (precision, level) = (Precision::Bounded, Level::baseline());
+                let tracer = RowTracer::culled_from(cull_from, &ladder, precision, level, &arena);
+                check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
+            }
         }
     }
 }
@@ -140,7 +174,7 @@ fn spans_kept_from_row_to_row_are_spans_computed_anew() {
 
 #[test]
 fn a_span_shows_what_its_pixels_are_defined_to_show() {
-    let size = 40;
+    let size = 61;
     each_frame(size, |name, tracer| {
         let mut scratch = Scratch::default();
         tracer.begin(&mut scratch);

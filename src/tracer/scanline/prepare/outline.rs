@@ -115,9 +115,9 @@ impl<'f> Outlines<'f> {
         outlines
     }
 
-    /// Whether so many lie one behind the other that it pays to look which are hidden.
-    pub(crate) fn are_deep(&self, grid: Grid) -> bool {
-        self.area > 4 * u64::from(grid.size) * u64::from(grid.size)
+    /// How many solids a pixel may show, in the mean over all pixels.
+    pub(crate) fn depth_complexity(&self, grid: Grid) -> u64 {
+        self.area / (u64::from(grid.size) * u64::from(grid.size))
     }
 
     /// Leaves out what is hidden in all tiles. What it leaves hides what is behind it there.

@@ -39,10 +39,12 @@ pub(crate) struct Builder<'f, 'c> {
 }
 
 impl<'f> Prepared<'f> {
-    /// `color` tells what decisions look like.
+    /// `color` tells what decisions look like. What is hidden is looked for where a pixel may show
+    /// `cull_from` solids.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
+        cull_from: u64,
         level: Level,
         arena: &'f Bump,
     ) -> Self {
@@ -56,7 +58,8 @@ impl<'f> Prepared<'f> {
         };
         let background = parts.paints.of(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
-        let tiles = outlines.are_deep(grid).then(|| {
+        let is_deep = outlines.depth_complexity(grid) >= cull_from;
+        let tiles = is_deep.then(|| {
             let mut tiles = Tiles::new(grid, level, arena);
             outlines.cull(&mut tiles);
             tiles
