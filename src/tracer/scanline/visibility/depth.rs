@@ -164,7 +164,9 @@ fn front(
         }
     }
     let (front, (_, most)) = candidate;
-    if most.is_finite() && others_begin > most {
+    // Behind everything there is nothing.
+    let is_alone = others_begin == f64::INFINITY;
+    if others_begin > most || (is_alone && matches!(front, Front::Rest)) {
         front
     } else {
         Front::Before(most)
