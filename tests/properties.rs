@@ -1,5 +1,5 @@
 //! Promise: over random scenes, aimed at what is hard, exact and reference give the same bits,
-//! which are those of the plain evaluation; and pictures that must be related are, bit for bit.
+//! which are the oracle's; and pictures that must be related are, bit for bit.
 //!
 //! Every run tries the same scenes.
 
@@ -15,7 +15,7 @@ use glam::DVec3;
 use model::{Model, angle, any_model, long, model, short, stage};
 
 use crate::helpers::{Random, trace_with_decisions};
-use crate::plain::Plain;
+use crate::oracle::Oracle;
 
 /// Why a property does not hold of a scene.
 enum Broken {
@@ -117,7 +117,7 @@ impl Frame {
 }
 
 #[test]
-fn exact_is_reference_and_the_plain_evaluation() {
+fn exact_is_reference_and_the_oracle() {
     let draw = |random: &mut Random| {
         let (mut model, alpha, stage) = (any_model(random), angle(random), stage(random));
         let size = [32, 32, 8 + random.below(20) as u32][random.below(3)];
@@ -136,11 +136,11 @@ fn exact_is_reference_and_the_plain_evaluation() {
         let [exact, reference] = [Kernel::Exact, Kernel::Reference]
             .map(|kernel| Frame::new(kernel, &scene, stage, alpha, size));
         exact.is(|column, row| reference.at(column, row))?;
-        let plain = Plain::new(&scene, alpha, size, 512);
+        let oracle = Oracle::new(&scene, alpha, size, 512);
         pixels.iter().try_for_each(|&(column, row)| {
-            let (decision, color) = plain.pixel(stage, column, row);
+            let (decision, color) = oracle.pixel(stage, column, row);
             let expected = (decision, color.map(f32::to_bits));
-            let at = || format!("by the plain evaluation at ({column}, {row})");
+            let at = || format!("by the oracle at ({column}, {row})");
             same(exact.at(column, row), expected, at)
         })
     });

@@ -2,9 +2,9 @@
 //! correctly; and how far off fast and double are there is known to the pixel.
 //!
 //! Every scene in `tests/scenes` is one that provokes something, which its first line names. The
-//! truth is the plain evaluation. It is slow, so it is asked about the pixels on either side of
-//! every border, and some others; over the whole frame exact and reference, which go different
-//! ways, must agree bit for bit, and the others are measured against them.
+//! truth is what the oracle says. The oracle is slow, so it is asked about the pixels on either
+//! side of every border, and some others; over the whole frame exact and reference, which go
+//! different ways, must agree bit for bit, and the others are measured against them.
 
 mod table;
 
@@ -17,13 +17,13 @@ use table::{Errors, Row, TABLE};
 use crate::helpers::{
     bits, hard_scene, hard_scene_text, hard_scenes, on_all_cores, trace_with_decisions,
 };
-use crate::plain::Plain;
+use crate::oracle::Oracle;
 
 /// N: a power of two, so that samples at α = 0 are short binary fractions, which scenes can meet
 /// exactly.
 const SIZE: u32 = 128;
 
-/// At most about this many pixels of a frame are evaluated plainly.
+/// The oracle is asked about at most about this many pixels of a frame.
 const SAMPLED: usize = 400;
 
 struct Frame {
@@ -63,8 +63,8 @@ fn errors(got: &Frame, truth: &Frame) -> Errors {
     errors
 }
 
-/// The pixels to evaluate plainly: those next to another decision, thinned out if they are many,
-/// and some others.
+/// The pixels to ask the oracle about: those next to another decision, thinned out if they are
+/// many, and some others.
 fn sampled(decisions: &[Decision]) -> BTreeSet<u32> {
     let differs = |a: u32, b: u32| decisions[a as usize] != decisions[b as usize];
     let mut border = BTreeSet::new();
@@ -82,15 +82,15 @@ fn sampled(decisions: &[Decision]) -> BTreeSet<u32> {
     border.into_iter().step_by(thin).chain(others).collect()
 }
 
-/// The pixels of a frame that the plain evaluation sees otherwise.
+/// The pixels of a frame that the oracle sees otherwise.
 fn wrong_pixels<'a>(
     frame: &Frame,
-    (plain, stage): (&Plain<'_>, Stage),
+    (oracle, stage): (&Oracle<'_>, Stage),
     pixels: impl Iterator<Item = &'a u32>,
 ) -> Vec<String> {
     let pixels = pixels.filter_map(|&index| {
         let (column, row) = (index % SIZE, index / SIZE);
-        let (decision, color) = plain.pixel(stage, column, row);
+        let (decision, color) = oracle.pixel(stage, column, row);
         let place = index as usize;
         let got = &frame.samples[3 * place..3 * place + 3];
         let same = frame.decisions[place] == decision && got == color.map(f32::to_bits);
@@ -125,12 +125,12 @@ fn check(row: &Row) -> Result<(), String> {
         return Err(format!("{name}: exact and reference differ: {apart:?}"));
     }
     let pixels = sampled(&exact.decisions);
-    let plain = |bits| Plain::new(&scene, row.alpha, SIZE, bits);
-    let mut wrong = wrong_pixels(&exact, (&plain(row.bits), stage), pixels.iter());
-    // What the plain evaluation takes for zero, it still takes for zero in twice as many bits.
+    let oracle = |bits| Oracle::new(&scene, row.alpha, SIZE, bits);
+    let mut wrong = wrong_pixels(&exact, (&oracle(row.bits), stage), pixels.iter());
+    // What the oracle takes for zero, it still takes for zero in twice as many bits.
     wrong.extend(wrong_pixels(
         &exact,
-        (&plain(2 * row.bits), stage),
+        (&oracle(2 * row.bits), stage),
         pixels.iter().step_by(16),
     ));
     if let Some(first) = wrong.first() {

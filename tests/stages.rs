@@ -4,13 +4,13 @@ use firsthit::camera::{ROUND, frame_angle};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 use crate::helpers::{bits, on_all_cores, trace, trace_with_decisions};
-use crate::plain::Plain;
+use crate::oracle::Oracle;
 
 /// The kernels that promise to be right, and double, which these scenes are not hard enough for.
 const KERNELS: [Kernel; 3] = [Kernel::Exact, Kernel::Reference, Kernel::Double];
 
 /// Traces a frame of each of some stages with each kernel and compares every pixel's decision and
-/// every sample with the plain evaluation.
+/// every sample with the oracle's.
 fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64, size: u32) {
     let frames = stages.map(|stage| {
         KERNELS.map(|kernel| {
@@ -18,9 +18,9 @@ fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64
             (kernel, image, decisions)
         })
     });
-    let plain = Plain::new(scene, alpha, size, 256);
+    let oracle = Oracle::new(scene, alpha, size, 256);
     let wrong_at = |column: u32, row: u32| {
-        let expected = plain.pixel_in_stages(stages, column, row);
+        let expected = oracle.pixel_in_stages(stages, column, row);
         let each_stage = stages.into_iter().zip(&frames).zip(expected);
         let wrong = each_stage.flat_map(|((stage, frames), (decision, color))| {
             let wrong = frames.iter().filter_map(move |(kernel, image, decisions)| {

@@ -32,8 +32,8 @@ mod limits;
 mod listing;
 #[cfg(feature = "program")]
 mod offscreen;
+mod oracle;
 mod pictures;
-mod plain;
 mod properties;
 #[cfg(feature = "program")]
 mod readme;

@@ -21,7 +21,7 @@ pub(crate) struct Row {
     pub(crate) scene: &'static str,
     pub(crate) stage: u8,
     pub(crate) alpha: f64,
-    /// The bits of the plain evaluation: more than twice those between the largest and the
+    /// The bits of the oracle's rounded numbers: more than twice those between the largest and the
     /// smallest term of a decision.
     pub(crate) bits: usize,
     pub(crate) fast: Errors,

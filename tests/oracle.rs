@@ -142,7 +142,7 @@ impl Solid {
 }
 
 /// A frame of the picture, ready to be evaluated pixel by pixel.
-pub(crate) struct Plain<'a> {
+pub(crate) struct Oracle<'a> {
     scene: &'a Scene,
     size: u32,
     bits: usize,
@@ -163,10 +163,10 @@ struct Sight {
     inside: Vec<OnceCell<Option<Inside>>>,
 }
 
-impl<'a> Plain<'a> {
+impl<'a> Oracle<'a> {
     /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are
     /// apart where something is.
-    pub(crate) fn new(scene: &'a Scene, alpha: f64, size: u32, bits: usize) -> Plain<'a> {
+    pub(crate) fn new(scene: &'a Scene, alpha: f64, size: u32, bits: usize) -> Oracle<'a> {
         let number = |value: f64| Number::exact(value, bits);
         let vector = |v: DVec3| v.to_array().map(number);
         let (sin, cos) = number(alpha).sin_cos();
@@ -197,7 +197,7 @@ impl<'a> Plain<'a> {
         });
         let solids = spheres.chain(tetrahedra).collect();
         let light = vector(-scene.light().direction);
-        Plain {
+        Oracle {
             scene,
             size,
             bits,
