@@ -1,23 +1,29 @@
-//! The picture evaluated plainly in as many bits as asked for, straight from its definition: world
-//! space, Equation 3-1 with its textbook discriminant, planes cut one by one, a mirrored ray that
-//! is really mirrored. It shares no formula with the tracer.
+//! The picture evaluated straight from its definition: world space, equation 3-1 with its textbook
+//! discriminant, planes cut one by one, a mirrored ray that is really mirrored. The oracle shares
+//! no code with the tracer, and hardly a formula.
 //!
-//! Lengths are measured in 1/(3N) and the eye looks along −(10 sin α, 3, 10 cos α), so that at α =
-//! 0 everything but square roots and the final colour is rational, and a touching line is seen to
-//! touch. At other angles what is zero for every α is seen to be small beyond accident (see
-//! [`Number`]).
+//! Lengths are measured in 1/(3N), the eye looks along −(10 sin α, 3, 10 cos α), and nothing is
+//! divided before the colour. So at α = 0 every number of a decision is exact, p + q√c, and so is
+//! every decision. At other angles sine and cosine are rounded to as many bits as asked for, and
+//! what is zero for every α is seen to be small beyond accident (see [`binary`]).
 
+mod binary;
 mod number;
 
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
+use firsthit::scene::Surface;
 use firsthit::tracer::{Decision, Seen};
 use firsthit::{Scene, Stage};
 use glam::DVec3;
 use number::Number;
 
 type Vector = [Number; 3];
+
+fn exact(v: DVec3) -> Vector {
+    v.to_array().map(Number::exact)
+}
 
 fn zip(a: &Vector, b: &Vector, f: impl Fn(&Number, &Number) -> Number) -> Vector {
     [f(&a[0], &b[0]), f(&a[1], &b[1]), f(&a[2], &b[2])]
@@ -48,18 +54,178 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-fn unit(a: &Vector) -> Vector {
-    let length = dot(a, a).root();
+/// The unit vector, in `bits` bits.
+fn unit(a: &Vector, bits: usize) -> Vector {
+    let a = a.each_ref().map(|a| a.limited(bits));
+    let length = dot(&a, &a).root();
     a.each_ref().map(|a| a / &length)
 }
 
+/// The point `place`/`scale`.
+struct Point {
+    place: Vector,
+    /// Positive.
+    scale: Number,
+}
+
+/// The points (place + t · direction)/scale, for t > 0; its line has those for every t.
+#[derive(Clone, Copy)]
+struct Ray<'a> {
+    start: &'a Point,
+    direction: &'a Vector,
+}
+
+/// A t as a numerator and a positive denominator, which has no root.
+struct Fraction(Number, Number);
+
+impl Fraction {
+    fn less(&self, other: &Fraction) -> bool {
+        (&self.0 * &other.1).less(&(&other.0 * &self.1))
+    }
+}
+
+impl Point {
+    fn toward<'a>(&'a self, direction: &'a Vector) -> Ray<'a> {
+        Ray {
+            start: self,
+            direction,
+        }
+    }
+}
+
+impl Ray<'_> {
+    fn at(self, Fraction(t, denominator): &Fraction) -> Point {
+        let place = scale(&self.start.place, denominator);
+        Point {
+            place: add(&place, &scale(self.direction, t)),
+            scale: &self.start.scale * denominator,
+        }
+    }
+}
+
+struct Sphere {
+    center: Vector,
+    radius: Number,
+}
+
+impl Sphere {
+    /// From the centre to a point, times its scale.
+    fn outward(&self, point: &Point) -> Vector {
+        sub(&point.place, &scale(&self.center, &point.scale))
+    }
+
+    /// a, b, c and b² − a c, where the points of the line in the sphere are those with a t² + 2 b t
+    /// + c ≤ 0; `None` where the line misses the sphere. Touching counts.
+    fn quadratic(&self, Ray { start, direction }: Ray<'_>) -> Option<[Number; 4]> {
+        let offset = self.outward(start);
+        let radius = &self.radius * &start.scale;
+        let a = dot(direction, direction);
+        let b = dot(direction, &offset);
+        let c = &dot(&offset, &offset) - &(&radius * &radius);
+        let discriminant = &(&b * &b) - &(&a * &c);
+        let meets = discriminant.sign().is_ge();
+        meets.then_some([a, b, c, discriminant])
+    }
+
+    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
+        let [a, b, _, discriminant] = self.quadratic(ray)?;
+        let t = Fraction(-&(&b + &discriminant.root()), a);
+        Some(Entry { t, face: None })
+    }
+
+    /// Whether the ray meets the sphere: its line does, and leaves it at (−b + √D)/a, which is
+    /// positive where b < 0, and otherwise where D > b².
+    fn is_ahead(&self, ray: Ray<'_>) -> bool {
+        let quadratic = self.quadratic(ray);
+        quadratic.is_some_and(|[_, b, c, _]| b.sign().is_lt() || c.sign().is_lt())
+    }
+}
+
+/// The points x with normal · x ≤ offset.
+struct HalfSpace {
+    normal: Vector,
+    offset: Number,
+}
+
+impl HalfSpace {
+    /// Positive where the point is outside.
+    fn outside(&self, point: &Point) -> Number {
+        &dot(&point.place, &self.normal) - &(&point.scale * &self.offset)
+    }
+}
+
+/// The points of all of some half-spaces: a tetrahedron's faces in their order, or the surface's
+/// plane from above and from below with the four sides.
+struct Polyhedron(Vec<HalfSpace>);
+
+impl Polyhedron {
+    fn tetrahedron(v: &[Vector; 4]) -> Polyhedron {
+        let face = |k: usize| {
+            let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &v[i]);
+            let normal = cross(&sub(b, a), &sub(c, a));
+            let inward = dot(&normal, &sub(&v[k], a)).sign().is_gt();
+            let normal = if inward { negative(&normal) } else { normal };
+            HalfSpace {
+                offset: dot(&normal, a),
+                normal,
+            }
+        };
+        Polyhedron((0..4).map(face).collect())
+    }
+
+    /// The plane comes first: its t is exact at every angle, where that of a side at the same place
+    /// is not.
+    fn square(height: &Number, half_width: &Number) -> Polyhedron {
+        let slabs = [
+            (DVec3::Y, height, &-height),
+            (DVec3::X, half_width, half_width),
+            (DVec3::Z, half_width, half_width),
+        ];
+        let half_space = |normal, offset: &Number| HalfSpace {
+            normal: exact(normal),
+            offset: offset.clone(),
+        };
+        let sides = |(n, high, low)| [half_space(n, high), half_space(-n, low)];
+        Polyhedron(slabs.into_iter().flat_map(sides).collect())
+    }
+
+    /// Where the line of a ray enters the last half-space, of several at once the first in order,
+    /// and each t where it leaves one; `None` where it leaves one before that.
+    fn meet(&self, ray: Ray<'_>) -> Option<(Entry, Vec<Fraction>)> {
+        let (mut entry, mut left): (Option<Entry>, _) = (None, Vec::new());
+        for (number, side) in self.0.iter().enumerate() {
+            // f + g t ≤ 0 within.
+            let (f, g) = (side.outside(ray.start), dot(ray.direction, &side.normal));
+            match g.sign() {
+                Ordering::Less => {
+                    let (t, face) = (Fraction(f, -&g), Some(number as u8));
+                    if entry.as_ref().is_none_or(|last| last.t.less(&t)) {
+                        entry = Some(Entry { t, face });
+                    }
+                }
+                Ordering::Greater => left.push(Fraction(-&f, g)),
+                Ordering::Equal if f.sign().is_gt() => return None,
+                Ordering::Equal => {}
+            }
+        }
+        let met = entry.map(|entry| (entry, left));
+        met.filter(|(entry, left)| left.iter().all(|t| !t.less(&entry.t)))
+    }
+
+    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
+        self.meet(ray).map(|(entry, _)| entry)
+    }
+
+    /// Whether the ray meets it at some t > 0.
+    fn is_ahead(&self, ray: Ray<'_>) -> bool {
+        let met = self.meet(ray);
+        met.is_some_and(|(_, left)| left.iter().all(|t| t.0.sign().is_gt()))
+    }
+}
+
 enum Shape {
-    Sphere {
-        center: Vector,
-        radius: Number,
-    },
-    /// A point of each face's plane, and its outward normal.
-    Tetrahedron(Vec<(Vector, Vector)>),
+    Sphere(Box<Sphere>),
+    Tetrahedron(Polyhedron),
 }
 
 struct Solid {
@@ -67,76 +233,34 @@ struct Solid {
     color: Vector,
 }
 
-/// Where a line is in a solid: from `near`, entering `face` with the outward normal there, to
-/// `far`.
-struct Inside {
-    near: Number,
-    far: Number,
+/// Where a ray enters a solid.
+struct Entry {
+    t: Fraction,
     face: Option<u8>,
-    normal: Vector,
 }
 
 impl Solid {
-    fn meet(&self, origin: &Vector, direction: &Vector) -> Option<Inside> {
+    /// Where the line of a ray enters it.
+    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
         match &self.shape {
-            Shape::Sphere { center, radius } => {
-                let from_center = sub(origin, center);
-                let a = dot(direction, direction);
-                let b = dot(direction, &from_center);
-                let c = &dot(&from_center, &from_center) - &(radius * radius);
-                let discriminant = &(&b * &b) - &(&a * &c);
-                if discriminant.sign().is_lt() {
-                    return None;
-                }
-                let root = discriminant.root();
-                let near = &(-&(&b + &root)) / &a;
-                let far = &(&root - &b) / &a;
-                let normal = add(&from_center, &scale(direction, &near));
-                Some(Inside {
-                    near,
-                    far,
-                    face: None,
-                    normal,
-                })
-            }
-            Shape::Tetrahedron(faces) => {
-                // t = num/den with den > 0; fractions are compared by multiplying out, which is
-                // exact where they are.
-                let less =
-                    |(a, b): &(Number, Number), (c, d): &(Number, Number)| (a * d).less(&(c * b));
-                let mut near: Option<(usize, (Number, Number))> = None;
-                let mut far: Option<(Number, Number)> = None;
-                for (k, (point, normal)) in faces.iter().enumerate() {
-                    let f = dot(&sub(origin, point), normal);
-                    let g = dot(direction, normal);
-                    match g.sign() {
-                        Ordering::Less => {
-                            let t = (f, -&g);
-                            if near.as_ref().is_none_or(|(_, other)| less(other, &t)) {
-                                near = Some((k, t));
-                            }
-                        }
-                        Ordering::Greater => {
-                            let t = (-&f, g);
-                            if far.as_ref().is_none_or(|other| less(&t, other)) {
-                                far = Some(t);
-                            }
-                        }
-                        Ordering::Equal if f.sign().is_gt() => return None,
-                        Ordering::Equal => {}
-                    }
-                }
-                let ((face, near), far) = (near?, far?);
-                if less(&far, &near) {
-                    return None;
-                }
-                Some(Inside {
-                    near: &near.0 / &near.1,
-                    far: &far.0 / &far.1,
-                    face: Some(face as u8),
-                    normal: faces[face].1.clone(),
-                })
-            }
+            Shape::Sphere(sphere) => sphere.entry(ray),
+            Shape::Tetrahedron(faces) => faces.entry(ray),
+        }
+    }
+
+    /// Whether the ray meets it at some t > 0.
+    fn is_ahead(&self, ray: Ray<'_>) -> bool {
+        match &self.shape {
+            Shape::Sphere(sphere) => sphere.is_ahead(ray),
+            Shape::Tetrahedron(faces) => faces.is_ahead(ray),
+        }
+    }
+
+    /// The outward normal, of any length, at a point of a face or of the sphere.
+    fn normal(&self, face: Option<u8>, point: &Point) -> Vector {
+        match &self.shape {
+            Shape::Sphere(sphere) => sphere.outward(point),
+            Shape::Tetrahedron(faces) => faces.0[usize::from(face.unwrap())].normal.clone(),
         }
     }
 }
@@ -149,71 +273,95 @@ pub(crate) struct Oracle<'a> {
     sin: Number,
     cos: Number,
     solids: Vec<Solid>,
-    /// Toward the light.
+    square: Option<Polyhedron>,
+    direct: View,
+    mirrored: View,
+    to_light: Vector,
+    /// l.
     light: Vector,
+}
+
+/// What is the same wherever one looks in one direction.
+struct View {
+    looking: Vector,
+    /// h = (v + l)/|v + l|; `None` where v + l = 0.
+    halfway: Option<Vector>,
+}
+
+impl View {
+    fn new(looking: Vector, to_light: &Vector, bits: usize) -> View {
+        let across = cross(&looking, to_light);
+        let is_parallel = across.iter().all(|x| x.sign().is_eq());
+        let is_opposite = is_parallel && dot(&looking, to_light).sign().is_gt();
+        let sum = || sub(&unit(to_light, bits), &unit(&looking, bits));
+        View {
+            halfway: (!is_opposite).then(|| unit(&sum(), bits)),
+            looking,
+        }
+    }
 }
 
 /// The line of sight through a pixel, which is the same in every stage.
 struct Sight {
     column: u32,
     row: u32,
-    eye: Vector,
-    looking: Vector,
-    /// Where it is in each solid, once a stage has asked.
-    inside: Vec<OnceCell<Option<Inside>>>,
+    eye: Point,
+    /// Where it enters each solid, once a stage has asked.
+    entries: Vec<OnceCell<Option<Entry>>>,
 }
 
 impl<'a> Oracle<'a> {
-    /// In 256 bits where nothing is extreme; twice as many as the numbers of scene and angle are
-    /// apart where something is.
+    /// Colours, and decisions at other angles than 0, are computed in `bits` bits: 256 where
+    /// nothing is extreme; twice as many as the numbers of scene and angle are apart where
+    /// something is.
     pub(crate) fn new(scene: &'a Scene, alpha: f64, size: u32, bits: usize) -> Oracle<'a> {
-        let number = |value: f64| Number::exact(value, bits);
-        let vector = |v: DVec3| v.to_array().map(number);
-        let (sin, cos) = number(alpha).sin_cos();
-        let unit_length = number(3.0 * f64::from(size));
-        let place = |p: DVec3| scale(&vector(p), &unit_length);
+        let [sin, cos] = Number::sin_cos(alpha, bits);
+        let unit_length = Number::exact(3.0 * f64::from(size));
+        let length = |value: f64| &Number::exact(value) * &unit_length;
+        let place = |p: DVec3| p.to_array().map(length);
         let spheres = scene.spheres().iter().map(|sphere| Solid {
-            shape: Shape::Sphere {
+            shape: Shape::Sphere(Box::new(Sphere {
                 center: place(sphere.center),
-                radius: &number(sphere.radius) * &unit_length,
-            },
-            color: vector(sphere.color),
+                radius: length(sphere.radius),
+            })),
+            color: exact(sphere.color),
         });
-        let tetrahedra = scene.tetrahedra().iter().map(|tetrahedron| {
-            let v = tetrahedron.vertices.map(place);
-            let faces = [0, 1, 2, 3].map(|k: usize| {
-                let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4];
-                let normal = cross(&sub(&v[b], &v[a]), &sub(&v[c], &v[a]));
-                let inward = dot(&normal, &sub(&v[k], &v[a])).sign().is_gt();
-                (
-                    v[a].clone(),
-                    if inward { negative(&normal) } else { normal },
-                )
-            });
-            Solid {
-                shape: Shape::Tetrahedron(faces.to_vec()),
-                color: vector(tetrahedron.color),
-            }
+        let tetrahedra = scene.tetrahedra().iter().map(|tetrahedron| Solid {
+            shape: Shape::Tetrahedron(Polyhedron::tetrahedron(&tetrahedron.vertices.map(place))),
+            color: exact(tetrahedron.color),
         });
-        let solids = spheres.chain(tetrahedra).collect();
-        let light = vector(-scene.light().direction);
+        let square = scene.surface().map(|surface| {
+            Polyhedron::square(&length(surface.height), &length(surface.half_width))
+        });
+        let [x, z] = [&sin, &cos].map(|component| &Number::exact(-10.0) * component);
+        let to_light = exact(-scene.light().direction);
+        let view = |y: f64| View::new([x.clone(), Number::exact(y), z.clone()], &to_light, bits);
         Oracle {
             scene,
             size,
             bits,
+            solids: spheres.chain(tetrahedra).collect(),
+            square,
+            direct: view(-3.0),
+            mirrored: view(3.0),
+            light: unit(&to_light, bits),
+            to_light,
             sin,
             cos,
-            solids,
-            light,
         }
     }
 
-    fn number(&self, value: f64) -> Number {
-        Number::exact(value, self.bits)
-    }
-
-    fn vector(&self, v: DVec3) -> Vector {
-        v.to_array().map(|x| self.number(x))
+    /// What is wrong with a pixel, if anything is.
+    pub(crate) fn problem(
+        &self,
+        stage: Stage,
+        (column, row): (u32, u32),
+        got: (Decision, [f32; 3]),
+    ) -> Option<String> {
+        let expected = self.pixel(stage, column, row);
+        let bits = |(decision, color): (Decision, [f32; 3])| (decision, color.map(f32::to_bits));
+        let is_wrong = bits(got) != bits(expected);
+        is_wrong.then(|| format!("({column}, {row}): {got:?} instead of {expected:?}"))
     }
 
     /// What a pixel shows in a stage.
@@ -237,25 +385,22 @@ impl<'a> Oracle<'a> {
 
     fn sight(&self, column: u32, row: u32) -> Sight {
         let n = f64::from(self.size);
-        let u = self.number(3.0 * (2.0 * f64::from(column) - n));
-        let v = self.number(3.0 * (2.0 * f64::from(row) - n));
-        let near = self.number(3.0 * n);
+        let u = Number::exact(3.0 * (2.0 * f64::from(column) - n));
+        let v = Number::exact(3.0 * (2.0 * f64::from(row) - n));
+        let near = Number::exact(3.0 * n);
         let eye = [
             &(&near * &self.sin) + &(&u * &self.cos),
             v,
             &(&near * &self.cos) - &(&u * &self.sin),
         ];
-        let looking = [
-            &self.number(-10.0) * &self.sin,
-            self.number(-3.0),
-            &self.number(-10.0) * &self.cos,
-        ];
         Sight {
             column,
             row,
-            eye,
-            looking,
-            inside: self.solids.iter().map(|_| OnceCell::new()).collect(),
+            eye: Point {
+                place: eye,
+                scale: Number::exact(1.0),
+            },
+            entries: self.solids.iter().map(|_| OnceCell::new()).collect(),
         }
     }
 
@@ -269,228 +414,134 @@ impl<'a> Oracle<'a> {
                 () if x >= middle && y <= middle => (2, [0.3, 0.0, 0.3]),
                 () => (3, [0.0; 3]),
             };
-            return (Decision::Quadrant(quadrant), color.map(|x| self.number(x)));
+            return (Decision::Quadrant(quadrant), color.map(Number::exact));
         }
-        let Sight { eye, looking, .. } = sight;
 
         let takes_part = |solid: &Solid| match stage {
-            Stage::Spheres => matches!(solid.shape, Shape::Sphere { .. }),
-            Stage::Tetrahedron => matches!(solid.shape, Shape::Tetrahedron { .. }),
+            Stage::Spheres => matches!(solid.shape, Shape::Sphere(_)),
+            Stage::Tetrahedron => matches!(solid.shape, Shape::Tetrahedron(_)),
             _ => true,
         };
-        let mut first: Option<(usize, &Inside)> = None;
-        for (index, solid) in self
-            .solids
-            .iter()
-            .enumerate()
-            .filter(|(_, solid)| takes_part(solid))
-        {
-            if let Some(inside) = sight.inside[index].get_or_init(|| solid.meet(eye, looking))
-                && first
-                    .as_ref()
-                    .is_none_or(|(_, other)| inside.near.less(&other.near))
+        let ray = sight.eye.toward(&self.direct.looking);
+        let mut first: Option<(usize, &Entry)> = None;
+        for (index, solid) in self.solids.iter().enumerate() {
+            if takes_part(solid)
+                && let Some(entry) = sight.entries[index].get_or_init(|| solid.entry(ray))
+                && first.is_none_or(|(_, other)| entry.t.less(&other.t))
             {
-                first = Some((index, inside));
+                first = Some((index, entry));
             }
         }
 
         if stage >= Stage::Shadow
-            && let Some(surface) = self.scene.surface()
+            && let (Some(surface), Some(square)) = (self.scene.surface(), &self.square)
+            && let Some(entry) = square.entry(ray)
+            && first.is_none_or(|(_, other)| entry.t.less(&other.t))
         {
-            // 3 t = v − height, both a multiple of 3.
-            let middle = self.number(2.0 * f64::from(sight.row) - n);
-            let t = &middle - &(&self.number(n) * &self.number(surface.height));
-            let point = add(eye, &scale(looking, &t));
-            let visible = first
-                .as_ref()
-                .is_none_or(|(_, inside)| t.less(&inside.near));
-            if visible && self.on_square(&point, &self.number(1.0)) {
-                return self.surface_at(stage, &point, looking);
+            return self.surface_at(stage, surface, &ray.at(&entry.t));
+        }
+        match first {
+            None => (Decision::Background, exact(self.scene.background())),
+            Some((index, entry)) => {
+                let (seen, color) = self.shade(stage, (index, entry), &sight.eye, &self.direct);
+                (Decision::Solid(seen), color)
+            }
+        }
+    }
+
+    /// What the surface shows at a point of it.
+    fn surface_at(&self, stage: Stage, surface: &Surface, point: &Point) -> (Decision, Vector) {
+        if self.is_shadowed(point, None) {
+            return (Decision::SurfaceInShadow, self.ambient());
+        }
+        let reflected = point.toward(&self.mirrored.looking);
+        let mut first: Option<(usize, Entry)> = None;
+        for (index, solid) in self.solids.iter().enumerate() {
+            // What the ray starts in it meets there, at t = 0.
+            if stage >= Stage::Reflection
+                && solid.is_ahead(reflected)
+                && let Some(entry) = solid.entry(reflected)
+                && first
+                    .as_ref()
+                    .is_none_or(|(_, other)| other.t.0.sign().is_gt() && entry.t.less(&other.t))
+            {
+                first = Some((index, entry));
             }
         }
         match first {
-            None => (Decision::Background, self.vector(self.scene.background())),
-            Some((index, inside)) => {
-                let point = add(eye, &scale(looking, &inside.near));
-                let (in_shadow, color) = self.shade(stage, (index, inside), &point, looking);
-                (
-                    Decision::Solid(Seen {
-                        solid: index as u16,
-                        face: inside.face,
-                        in_shadow,
-                    }),
-                    color,
-                )
+            None => (Decision::Surface, exact(surface.color)),
+            Some((index, entry)) => {
+                let (seen, color) = self.shade(stage, (index, &entry), point, &self.mirrored);
+                let reflectance = Number::exact(surface.reflectance);
+                (Decision::Mirrored(seen), scale(&color, &reflectance))
             }
         }
     }
 
-    fn surface_at(&self, stage: Stage, point: &Vector, looking: &Vector) -> (Decision, Vector) {
-        let Some(surface) = self.scene.surface() else {
-            unreachable!("there is a surface")
+    /// Whether any solid but one hides the light from a point.
+    fn is_shadowed(&self, point: &Point, besides: Option<usize>) -> bool {
+        let to_light = point.toward(&self.to_light);
+        let mut solids = (0..).zip(&self.solids);
+        solids.any(|(index, solid)| Some(index) != besides && solid.is_ahead(to_light))
+    }
+
+    /// A solid as the ray of a view sees it, and its colour there.
+    fn shade(
+        &self,
+        stage: Stage,
+        (index, entry): (usize, &Entry),
+        start: &Point,
+        view: &View,
+    ) -> (Seen, Vector) {
+        let solid = &self.solids[index];
+        let seen = |in_shadow| Seen {
+            solid: index as u16,
+            face: entry.face,
+            in_shadow,
         };
-        if self.shadowed(point, None) {
-            return (Decision::SurfaceInShadow, self.ambient());
+        if stage < Stage::Shading {
+            return (seen(false), solid.color.clone());
         }
-        if stage >= Stage::Reflection {
-            let mirrored = [looking[0].clone(), -&looking[1], looking[2].clone()];
-            let zero = self.number(0.0);
-            let start = |inside: &Inside| {
-                if inside.near.less(&zero) {
-                    zero.clone()
-                } else {
-                    inside.near.clone()
-                }
-            };
-            let mut first: Option<(usize, Inside)> = None;
-            for (index, solid) in self.solids.iter().enumerate() {
-                if let Some(inside) = solid.meet(point, &mirrored)
-                    && inside.far.sign().is_gt()
-                    && first
-                        .as_ref()
-                        .is_none_or(|(_, other)| start(&inside).less(&start(other)))
-                {
-                    first = Some((index, inside));
-                }
-            }
-            if let Some((index, inside)) = first {
-                let seen_point = add(point, &scale(&mirrored, &inside.near));
-                let (in_shadow, color) =
-                    self.shade(stage, (index, &inside), &seen_point, &mirrored);
-                let seen = Seen {
-                    solid: index as u16,
-                    face: inside.face,
-                    in_shadow,
-                };
-                return (
-                    Decision::Mirrored(seen),
-                    scale(&color, &self.number(surface.reflectance)),
-                );
-            }
-        }
-        (Decision::Surface, self.vector(surface.color))
-    }
-
-    /// Half the length of the square's sides.
-    fn half_width(&self) -> Option<Number> {
-        let surface = self.scene.surface()?;
-        let unit_length = self.number(3.0 * f64::from(self.size));
-        Some(&self.number(surface.half_width) * &unit_length)
-    }
-
-    /// Whether a point in the square's plane is in the square, both scaled by `factor`.
-    fn on_square(&self, point: &Vector, factor: &Number) -> bool {
-        self.half_width().is_some_and(|half_width| {
-            let half_width = &half_width * factor;
-            [&point[0], &point[2]]
-                .into_iter()
-                .all(|x| !half_width.less(x) && !half_width.less(&-x))
-        })
-    }
-
-    fn shadowed(&self, point: &Vector, besides: Option<usize>) -> bool {
-        self.solids.iter().enumerate().any(|(index, solid)| {
-            Some(index) != besides
-                && solid
-                    .meet(point, &self.light)
-                    .is_some_and(|inside| inside.far.sign().is_gt())
-        })
-    }
-
-    fn shaded_by_surface(&self, point: &Vector) -> bool {
-        let Some(surface) = self.scene.surface() else {
-            return false;
+        let point = start.toward(&view.looking).at(&entry.t);
+        let normal = solid.normal(entry.face, &point);
+        let by_surface = |square: &Polyhedron| square.is_ahead(point.toward(&self.to_light));
+        let in_shadow = stage >= Stage::Shadow
+            && (dot(&normal, &self.to_light).sign().is_le()
+                || self.is_shadowed(&point, Some(index))
+                || self.square.as_ref().is_some_and(by_surface));
+        let light = if in_shadow {
+            self.ambient()
+        } else {
+            self.lit(&normal, view)
         };
-        let unit_length = self.number(3.0 * f64::from(self.size));
-        let rise = &(&self.number(surface.height) * &unit_length) - &point[1];
-        let climb = &self.light[1];
-        let (positive, scaled_t) = match climb.sign() {
-            Ordering::Less => (-climb, -&rise),
-            Ordering::Equal => return rise.sign().is_eq() && self.crosses_square(point),
-            Ordering::Greater => (climb.clone(), rise),
-        };
-        scaled_t.sign().is_gt()
-            && self.on_square(
-                &add(&scale(point, &positive), &scale(&self.light, &scaled_t)),
-                &positive,
-            )
-    }
-
-    /// Whether the ray to a light in the square's plane meets the square at some t > 0, from a
-    /// point in that plane.
-    fn crosses_square(&self, point: &Vector) -> bool {
-        let Some(half_width) = self.half_width() else {
-            return false;
-        };
-        // −H ≤ p + t l ≤ H for x and for z, each bound on t as numerator and positive denominator.
-        let (mut lower, mut upper) = (vec![(self.number(0.0), self.number(1.0))], vec![]);
-        for axis in [0, 2] {
-            let (p, l) = (&point[axis], &self.light[axis]);
-            let (to_low, to_high) = (&-&half_width - p, &half_width - p);
-            match l.sign() {
-                Ordering::Greater => {
-                    lower.push((to_low, l.clone()));
-                    upper.push((to_high, l.clone()));
-                }
-                Ordering::Less => {
-                    lower.push((-&to_high, -l));
-                    upper.push((-&to_low, -l));
-                }
-                Ordering::Equal if to_low.sign().is_gt() || to_high.sign().is_lt() => return false,
-                Ordering::Equal => {}
-            }
-        }
-        // 0 itself does not belong to the ray.
-        upper
-            .iter()
-            .all(|(a, b)| a.sign().is_gt() && lower.iter().all(|(c, d)| !(a * d).less(&(c * b))))
+        (seen(in_shadow), zip(&solid.color, &light, |c, l| c * l))
     }
 
     fn ambient(&self) -> Vector {
         let (light, material) = (self.scene.light(), self.scene.material());
         zip(
-            &self.vector(material.ambient),
-            &self.vector(light.ambient_intensity),
+            &exact(material.ambient),
+            &exact(light.ambient_intensity),
             |k, i| k * i,
         )
     }
 
-    /// Whether a point of a solid is in shadow, and its colour.
-    fn shade(
-        &self,
-        stage: Stage,
-        (index, inside): (usize, &Inside),
-        point: &Vector,
-        looking: &Vector,
-    ) -> (bool, Vector) {
-        let color = &self.solids[index].color;
-        if matches!(stage, Stage::Spheres | Stage::Tetrahedron) {
-            return (false, color.clone());
+    /// Equation 4-1 in the light.
+    fn lit(&self, normal: &Vector, view: &View) -> Vector {
+        let material = self.scene.material();
+        let intensity = exact(self.scene.light().intensity);
+        let times_intensity = |k: DVec3| zip(&exact(k), &intensity, |k, i| k * i);
+        let n = unit(normal, self.bits);
+        let mut sum = self.ambient();
+        if dot(normal, &self.to_light).sign().is_gt() {
+            let diffuse = times_intensity(material.diffuse);
+            sum = add(&sum, &scale(&diffuse, &dot(&n, &self.light)));
         }
-        let normal = unit(&inside.normal);
-        let l = unit(&self.light);
-        let facing = dot(&inside.normal, &self.light).sign();
-        let in_shadow = stage >= Stage::Shadow
-            && (facing.is_le()
-                || self.shadowed(point, Some(index))
-                || self.shaded_by_surface(point));
-        let mut light = self.ambient();
-        if !in_shadow {
-            let material = self.scene.material();
-            let intensity = self.vector(self.scene.light().intensity);
-            let times_intensity = |k: DVec3| zip(&self.vector(k), &intensity, |k, i| k * i);
-            if facing.is_gt() {
-                let diffuse = times_intensity(material.diffuse);
-                light = add(&light, &scale(&diffuse, &dot(&normal, &l)));
-            }
-            let sum = add(&unit(&negative(looking)), &l);
-            if sum.iter().any(|x| x.sign().is_ne()) {
-                let n_h = dot(&normal, &unit(&sum));
-                let specular = times_intensity(material.specular);
-                let highlight = n_h.clipped_power(material.exponent);
-                light = add(&light, &scale(&specular, &highlight));
-            }
+        if let Some(halfway) = &view.halfway {
+            let specular = times_intensity(material.specular);
+            let highlight = dot(&n, halfway).clipped_power(material.exponent);
+            sum = add(&sum, &scale(&specular, &highlight));
         }
-        (in_shadow, zip(color, &light, |c, l| c * l))
+        sum
     }
 }

@@ -88,21 +88,13 @@ fn wrong_pixels<'a>(
     (oracle, stage): (&Oracle<'_>, Stage),
     pixels: impl Iterator<Item = &'a u32>,
 ) -> Vec<String> {
-    let pixels = pixels.filter_map(|&index| {
-        let (column, row) = (index % SIZE, index / SIZE);
-        let (decision, color) = oracle.pixel(stage, column, row);
+    let problems = pixels.filter_map(|&index| {
         let place = index as usize;
-        let got = &frame.samples[3 * place..3 * place + 3];
-        let same = frame.decisions[place] == decision && got == color.map(f32::to_bits);
-        (!same).then(|| {
-            let got: Vec<f32> = got.iter().map(|&bits| f32::from_bits(bits)).collect();
-            format!(
-                "({column}, {row}): {:?} {got:?} instead of {decision:?} {color:?}",
-                frame.decisions[place]
-            )
-        })
+        let color = [0, 1, 2].map(|channel| f32::from_bits(frame.samples[3 * place + channel]));
+        let got = (frame.decisions[place], color);
+        oracle.problem(stage, (index % SIZE, index / SIZE), got)
     });
-    pixels.collect()
+    problems.collect()
 }
 
 /// Checks a row: what is wrong, or the row as it should be.
