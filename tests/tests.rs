@@ -19,6 +19,7 @@ mod commit;
 #[cfg(feature = "program")]
 mod compare;
 mod crowds;
+mod doubt;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod drivers;
 #[cfg(feature = "program")]
@@ -44,5 +45,6 @@ mod scene_files;
 mod screen;
 mod stability;
 mod stages;
+mod ties;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod whole_files;
