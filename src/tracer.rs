@@ -29,8 +29,6 @@ mod palette;
 mod pixel;
 pub(crate) mod pool;
 mod progress;
-#[cfg(test)]
-mod rational;
 mod scanline;
 mod shading;
 mod simd;
