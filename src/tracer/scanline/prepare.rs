@@ -2,6 +2,7 @@
 //! bring.
 
 pub(super) mod bodies;
+pub(super) mod builder;
 pub(super) mod culling;
 pub(super) mod depth;
 pub(super) mod floor;

@@ -14,19 +14,53 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
-use crate::tracer::scanline::prepare::outline::Outlined;
-use crate::tracer::scanline::prepare::prepared::Builder;
+use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
-use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair};
+use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solid, Solids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::view::View;
 
+/// The solids with these outlines, and the edges that they bring. `view` is that of the scene, or
+/// the one in the mirror.
+pub(crate) fn with_bodies<'f>(
+    picture: &Picture<'_, Bounded>,
+    view: &View<'_, Bounded>,
+    outlines: Outlines<'f>,
+    parts: &mut Builder<'f, '_>,
+) -> Solids<'f> {
+    let (arena, mirrored) = (parts.arena, outlines.mirrored);
+    let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
+    let bodies = Bodies::new(picture, view, mirrored);
+    let mut solids = Growing::with_capacity_in(numbers.len(), arena);
+    for (place, solid) in outlines.all.into_iter().enumerate() {
+        let body = bodies.of(&solid, parts);
+        let edge = if mirrored {
+            Edge::Mirrored(place)
+        } else {
+            Edge::Direct(place)
+        };
+        parts.edges.add(solid.outline, edge);
+        solids.push(Solid {
+            side: solid.side,
+            depth: solid.depth,
+            body,
+        });
+    }
+    Solids {
+        mirrored,
+        solids: solids.into_bump_slice(),
+        separation: Separation::new(view, numbers, arena),
+    }
+}
+
 /// What the bodies of a view have in common.
-pub(crate) struct Bodies<'p, 's> {
+struct Bodies<'p, 's> {
     picture: &'p Picture<'s, Bounded>,
     view: &'p View<'s, Bounded>,
     mirrored: bool,
@@ -38,12 +72,7 @@ pub(crate) struct Bodies<'p, 's> {
 }
 
 impl<'p, 's> Bodies<'p, 's> {
-    /// `view` is that of the scene, or the one in the mirror.
-    pub(crate) fn new(
-        picture: &'p Picture<'s, Bounded>,
-        view: &'p View<'s, Bounded>,
-        mirrored: bool,
-    ) -> Self {
+    fn new(picture: &'p Picture<'s, Bounded>, view: &'p View<'s, Bounded>, mirrored: bool) -> Self {
         Bodies {
             picture,
             view,
@@ -55,7 +84,7 @@ impl<'p, 's> Bodies<'p, 's> {
     }
 
     /// The body of a solid, with what it brings of edges and paints.
-    pub(crate) fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+    fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
         match (self.view.spheres.get(solid.number), solid.outline.ellipse()) {
             (Some(sphere), Some(outline)) => self.sphere(solid.number, sphere, outline, parts),
             _ => self.facets(solid, parts),

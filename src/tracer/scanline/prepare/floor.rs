@@ -10,9 +10,10 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Edge, Receiver};
+use crate::tracer::scanline::prepare::bodies::with_bodies;
+use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
-use crate::tracer::scanline::prepare::prepared::Builder;
 use crate::tracer::scanline::prepare::shadows::shadows_on;
 use crate::tracer::scanline::prepare::solids::Solids;
 use crate::tracer::scanline::rounding::{MORE, U};
@@ -100,7 +101,7 @@ impl<'f> Floor<'f> {
         Floor {
             mirrored: mirror
                 .zip(mirrored)
-                .map(|(mirror, outlines)| Solids::new(picture, &mirror.view, outlines, parts)),
+                .map(|(mirror, outlines)| with_bodies(picture, &mirror.view, outlines, parts)),
             depth,
             paint: parts.paints.of(Decision::Surface),
             in_shadow: parts.paints.of(Decision::SurfaceInShadow),

@@ -9,6 +9,8 @@ use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::table::{EdgeTable, Edges};
 use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::bodies::with_bodies;
+use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::floor::Floor;
 use crate::tracer::scanline::prepare::outline::Outlines;
@@ -27,15 +29,6 @@ pub(crate) struct Prepared<'f> {
     pub(crate) shaded_spheres: usize,
     /// The picture of code 2-1, where that is the stage.
     pub(crate) quadrants: Option<[PaintNumber; 4]>,
-}
-
-/// The parts of a frame that all of it adds to, while it is prepared.
-pub(crate) struct Builder<'f, 'c> {
-    pub(crate) grid: Grid,
-    pub(crate) arena: &'f Bump,
-    pub(crate) edges: Edges<'f>,
-    pub(crate) paints: Paints<'f, 'c>,
-    pub(crate) shaded_spheres: usize,
 }
 
 impl<'f> Prepared<'f> {
@@ -66,7 +59,7 @@ impl<'f> Prepared<'f> {
         });
         let floor = picture.floor.as_ref();
         let floor = floor.map(|floor| Floor::new(picture, floor, tiles.as_ref(), &mut parts));
-        let direct = Solids::new(picture, &picture.view, outlines, &mut parts);
+        let direct = with_bodies(picture, &picture.view, outlines, &mut parts);
         let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         Prepared {

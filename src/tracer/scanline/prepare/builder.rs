@@ -1,0 +1,16 @@
+//! What all of a frame adds to while it is prepared.
+
+use bumpalo::Bump;
+
+use crate::tracer::scanline::edges::table::Edges;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::write::paint::Paints;
+
+/// The parts of a frame that all of it adds to, while it is prepared.
+pub(crate) struct Builder<'f, 'c> {
+    pub(crate) grid: Grid,
+    pub(crate) arena: &'f Bump,
+    pub(crate) edges: Edges<'f>,
+    pub(crate) paints: Paints<'f, 'c>,
+    pub(crate) shaded_spheres: usize,
+}
