@@ -55,6 +55,23 @@ impl<R: Real> Sphere<R> {
         }))
     }
 
+    /// How the depth of this sphere's first hit compares with that of another one, where a line
+    /// meets both and their centres are known to lie abreast of it: then only the discriminants
+    /// differ, and no root is needed to see that these are the same.
+    pub(super) fn compare_abreast(
+        &self,
+        other: &Sphere<R>,
+        line: &Line<R>,
+    ) -> Result<Option<Ordering>, R::Doubt> {
+        let ahead = (other.center - self.center).dot(line.direction.vector);
+        if !ahead.sign()?.is_eq() {
+            return Ok(None);
+        }
+        let discriminant = |sphere: &Sphere<R>| sphere.discriminant(line, sphere.moment(line));
+        let order = (discriminant(self) - discriminant(other)).sign()?;
+        Ok(Some(order.reverse()))
+    }
+
     /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line
     /// meets it, and the ray moves toward the centre.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {

@@ -226,7 +226,12 @@ impl<'f, R: Real> View<'f, R> {
         self.each_hit(pixel, ray, reach, solids, |solid, hit| {
             let nearer = match &first {
                 Some((_, other)) if other.support == hit.support => false,
-                Some((_, other)) => (hit.depth - other.depth).sign()?.is_lt(),
+                Some((number, other)) => {
+                    let order = (hit.depth - other.depth).sign();
+                    order
+                        .or_else(|doubt| self.compare_abreast(solid, *number, ray, doubt))?
+                        .is_lt()
+                }
                 None => true,
             };
             if nearer {
@@ -235,6 +240,21 @@ impl<'f, R: Real> View<'f, R> {
             Ok(())
         })?;
         Ok(first)
+    }
+
+    /// How the depths of two solids compare where their difference is in doubt: known of spheres
+    /// abreast of the ray.
+    fn compare_abreast(
+        &self,
+        one: usize,
+        other: usize,
+        ray: &Line<R>,
+        doubt: R::Doubt,
+    ) -> Result<Ordering, R::Doubt> {
+        match (self.spheres.get(one), self.spheres.get(other)) {
+            (Some(one), Some(other)) => one.compare_abreast(other, ray)?.ok_or(doubt),
+            _ => Err(doubt),
+        }
     }
 
     fn each_hit(
