@@ -12,6 +12,7 @@
 //!   precision;
 //! - `scanline`: the same again for whole rows at once, which makes nearly every pixel;
 //! - `listing`: the document's own way, slips included, by itself;
+//! - `frame_work`: a frame in the arithmetic of each kernel;
 //! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words.
 
 mod arena;
@@ -20,6 +21,7 @@ mod error;
 mod explain;
 mod extent;
 mod frame;
+mod frame_work;
 mod in_doubt;
 mod kernel;
 mod ladder;
@@ -50,23 +52,17 @@ use crate::{Image, Scene, Stage};
 use arena::Arena;
 pub use decision::{Decision, Seen};
 pub use error::TraceError;
+use frame_work::{FrameWork, with_frame};
 pub use in_doubt::InDoubt;
 pub use kernel::Kernel;
-use ladder::{Ladder, Lines, Pixels, Plain, Rung};
-use listing::Listing;
+use ladder::{Lines, Pixels, Rung};
 use pool::{Pool, lock};
 pub use progress::Progress;
 use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
 pub use simd::Simd;
 use target::Target;
 
-/// A pixel of a kernel that goes pixel by pixel.
-fn explain_pixel(pixels: &impl Pixels, (column, row): (u32, u32)) -> (String, Rung) {
-    let (traced, rung) = pixels.pixel(column, row);
-    (pixels.explain(column, row, traced), rung)
-}
-
-/// RowTracer are handed to threads in bands of so many: those that are crossed at once, so that no
+/// Rows are handed to threads in bands of so many: those that are crossed at once, so that no
 /// two threads cross the same. They are few enough that the last band of one is not long waited for
 /// by the others, and so many that claiming them costs nothing beside that.
 const BAND: usize = ROWS;
@@ -240,26 +236,13 @@ impl Tracer {
         if column >= size || row >= size {
             return Err(TraceError::Pixel { column, row, size });
         }
-        let (at, arena) = ((column, row), &Arena::default());
-        let (text, rung) = match self.kernel {
-            Kernel::Exact => {
-                let ladder = Ladder::new(scene, stage, alpha, size, Rung::Double, arena);
-                self.explain_from_row(&ladder, Precision::Bounded, at, arena)
-            }
-            Kernel::Fast => {
-                let plain = Plain::<f32>::new(scene, stage, alpha, size, arena);
-                self.explain_from_row(&plain, Precision::Single, at, arena)
-            }
-            Kernel::Double => {
-                let plain = Plain::<f64>::new(scene, stage, alpha, size, arena);
-                self.explain_from_row(&plain, Precision::Double, at, arena)
-            }
-            Kernel::Listing => explain_pixel(&Listing::new(scene, stage, alpha, size)?, at),
-            Kernel::Reference => {
-                let ladder = Ladder::new(scene, stage, alpha, size, Rung::DoubleDouble, arena);
-                explain_pixel(&ladder, at)
-            }
+        let arena = Arena::default();
+        let work = ExplainPixel {
+            simd: self.simd,
+            at: (column, row),
         };
+        let frame = (scene, stage, alpha, size);
+        let (text, rung) = with_frame(self.kernel, frame, &arena, work)?;
         let by = match (self.kernel, rung) {
             (Kernel::Fast, _) => "f32",
             (Kernel::Double | Kernel::Listing, _) => "f64",
@@ -274,37 +257,6 @@ impl Tracer {
         ))
     }
 
-    /// The pixel as it is traced, with the rest of its row.
-    fn explain_from_row(
-        &self,
-        pixels: &impl Lines,
-        precision: Precision,
-        (column, row): (u32, u32),
-        arena: &Arena,
-    ) -> (String, Rung) {
-        let size = pixels.bounded().size as usize;
-        let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
-        let (rows, mut scratch) = (
-            RowTracer::new(pixels, precision, self.simd.0, arena),
-            Scratch::default(),
-        );
-        rows.begin(&mut scratch);
-        let only = row..row + 1;
-        let decided = Some(&mut decisions[..]);
-        rows.trace(
-            only,
-            &mut samples,
-            decided,
-            None,
-            &mut scratch,
-            &Progress::default(),
-        );
-        let place = column as usize;
-        let color = std::array::from_fn(|channel| samples[3 * place + channel]);
-        let text = pixels.explain(column, row, (decisions[place], color));
-        (text, pixels.pixel(column, row).1)
-    }
-
     fn trace_frame(
         &mut self,
         scene: &Scene,
@@ -317,15 +269,30 @@ impl Tracer {
         if !alpha.is_finite() {
             return Err(TraceError::Angle(alpha));
         }
-        let n = image.size();
-        // Refused before anything is written or forgotten.
-        let listing = match self.kernel {
-            Kernel::Listing => Some(Listing::new(scene, stage, alpha, n)?),
-            _ => None,
-        };
-        self.progress.begin();
         let mut arena = std::mem::take(inner(&mut self.arena));
         arena.clear();
+        let (kernel, frame) = (self.kernel, (scene, stage, alpha, image.size()));
+        let work = TraceFrame {
+            tracer: self,
+            image,
+            decisions,
+            extent,
+        };
+        let traced = with_frame(kernel, frame, &arena, work);
+        *inner(&mut self.arena) = arena;
+        traced
+    }
+
+    /// Traces into an image by `trace`, which gets where samples and decisions go.
+    fn trace_into(
+        &mut self,
+        image: &mut Image,
+        decisions: Option<&mut [Decision]>,
+        extent: Extent,
+        trace: impl FnOnce(&mut Tracer, Target<'_>) -> InDoubt,
+    ) {
+        self.progress.begin();
+        let size = image.size();
         let mut memory = std::mem::take(&mut self.memory);
         let (remembered, samples) = match extent {
             Extent::Whole => (None, image.samples_mut()),
@@ -334,40 +301,20 @@ impl Tracer {
                 if !known {
                     memory.iter_mut().for_each(RowHistory::clear);
                 }
-                memory.resize_with(n as usize, RowHistory::default);
+                memory.resize_with(size as usize, RowHistory::default);
                 self.frame = next_frame();
                 let samples = image.samples_of_frame(self.frame);
                 (Some(memory.as_mut_slice()), samples)
             }
         };
         let target = Target {
-            size: n,
+            size,
             samples,
             decisions,
             memory: remembered,
         };
-        self.in_doubt = match (self.kernel, &listing) {
-            (_, Some(listing)) => self.trace_pixels(listing, target),
-            (Kernel::Fast, _) => {
-                let plain = Plain::<f32>::new(scene, stage, alpha, n, &arena);
-                self.trace_rows(&plain, Precision::Single, target, &arena)
-            }
-            (Kernel::Double, _) => {
-                let plain = Plain::<f64>::new(scene, stage, alpha, n, &arena);
-                self.trace_rows(&plain, Precision::Double, target, &arena)
-            }
-            (Kernel::Reference, _) => {
-                let ladder = Ladder::new(scene, stage, alpha, n, Rung::DoubleDouble, &arena);
-                self.trace_pixels(&ladder, target)
-            }
-            _ => {
-                let ladder = Ladder::new(scene, stage, alpha, n, Rung::Double, &arena);
-                self.trace_rows(&ladder, Precision::Bounded, target, &arena)
-            }
-        };
-        *inner(&mut self.arena) = arena;
+        self.in_doubt = trace(self, target);
         self.memory = memory;
-        Ok(())
     }
 
     fn trace_rows(
@@ -455,6 +402,68 @@ impl Tracer {
         let in_doubt = |local: &mut Mutex<Local>| std::mem::take(&mut inner(local).in_doubt);
         let counts = self.local.iter_mut().map(in_doubt);
         counts.fold(InDoubt::default(), InDoubt::and)
+    }
+}
+
+/// A frame that is traced into an image.
+struct TraceFrame<'t> {
+    tracer: &'t mut Tracer,
+    image: &'t mut Image,
+    decisions: Option<&'t mut [Decision]>,
+    extent: Extent,
+}
+
+impl FrameWork for TraceFrame<'_> {
+    type Output = ();
+
+    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) {
+        let trace = |tracer: &mut Tracer, target: Target<'_>| {
+            tracer.trace_rows(pixels, precision, target, arena)
+        };
+        let tracer = self.tracer;
+        tracer.trace_into(self.image, self.decisions, self.extent, trace);
+    }
+
+    fn by_pixels(self, pixels: &impl Pixels) {
+        let trace = |tracer: &mut Tracer, target: Target<'_>| tracer.trace_pixels(pixels, target);
+        let tracer = self.tracer;
+        tracer.trace_into(self.image, self.decisions, self.extent, trace);
+    }
+}
+
+/// A pixel that is worked through, and the arithmetic that settles it.
+struct ExplainPixel {
+    simd: Simd,
+    at: (u32, u32),
+}
+
+impl FrameWork for ExplainPixel {
+    type Output = (String, Rung);
+
+    /// As it is traced, with the rest of its row.
+    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) -> (String, Rung) {
+        let (column, row) = self.at;
+        let size = pixels.bounded().size as usize;
+        let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);
+        let (rows, mut scratch) = (
+            RowTracer::new(pixels, precision, self.simd.0, arena),
+            Scratch::default(),
+        );
+        rows.begin(&mut scratch);
+        let only = row..row + 1;
+        let decided = Some(&mut decisions[..]);
+        let progress = Progress::default();
+        rows.trace(only, &mut samples, decided, None, &mut scratch, &progress);
+        let place = column as usize;
+        let color = std::array::from_fn(|channel| samples[3 * place + channel]);
+        let text = pixels.explain(column, row, (decisions[place], color));
+        (text, pixels.pixel(column, row).1)
+    }
+
+    fn by_pixels(self, pixels: &impl Pixels) -> (String, Rung) {
+        let (column, row) = self.at;
+        let (traced, rung) = pixels.pixel(column, row);
+        (pixels.explain(column, row, traced), rung)
     }
 }
 

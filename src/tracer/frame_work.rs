@@ -1,0 +1,48 @@
+//! A frame in the arithmetic of a kernel, for whatever is to be done with it.
+
+use super::arena::Arena;
+use super::error::TraceError;
+use super::kernel::Kernel;
+use super::ladder::{Ladder, Lines, Pixels, Plain, Rung};
+use super::listing::Listing;
+use super::scanline::Precision;
+use crate::scene::Scene;
+use crate::stage::Stage;
+
+/// What is done with a frame.
+pub(super) trait FrameWork {
+    type Output;
+
+    /// Where the kernel traces whole rows; what lives as long as the frame lies in the arena.
+    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) -> Self::Output;
+
+    /// Where it goes pixel by pixel.
+    fn by_pixels(self, pixels: &impl Pixels) -> Self::Output;
+}
+
+/// Does it with a frame: a scene in a stage at an angle α, of N × N pixels.
+///
+/// # Errors
+/// [`TraceError::Listing`] where the kernel is [`Kernel::Listing`] and the scene not of the
+/// document's shape; nothing is done then.
+pub(super) fn with_frame<W: FrameWork>(
+    kernel: Kernel,
+    (scene, stage, alpha, size): (&Scene, Stage, f64, u32),
+    arena: &Arena,
+    work: W,
+) -> Result<W::Output, TraceError> {
+    let ladder = |lowest| Ladder::new(scene, stage, alpha, size, lowest, arena);
+    Ok(match kernel {
+        Kernel::Exact => work.by_rows(&ladder(Rung::Double), Precision::Bounded, arena),
+        Kernel::Fast => {
+            let plain = Plain::<f32>::new(scene, stage, alpha, size, arena);
+            work.by_rows(&plain, Precision::Single, arena)
+        }
+        Kernel::Double => {
+            let plain = Plain::<f64>::new(scene, stage, alpha, size, arena);
+            work.by_rows(&plain, Precision::Double, arena)
+        }
+        Kernel::Listing => work.by_pixels(&Listing::new(scene, stage, alpha, size)?),
+        Kernel::Reference => work.by_pixels(&ladder(Rung::DoubleDouble)),
+    })
+}
