@@ -136,3 +136,31 @@ fn put<S: Simd, V: SimdFloat<S, Element = f32>>(
     let vector = paint.from::<S, V>(simd, place);
     vector.store_slice(&mut samples[place..place + V::LEN]);
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    #[test]
+    fn samples_are_filled_from_any_place_to_any_other() {
+        let paint = Paint::new(Decision::Background, [0.25, 0.5, 0.75]);
+        for level in [Level::new(), Level::baseline()] {
+            for length in (0..80).chain([150, 299, 300, 301]) {
+                for start in 0..20 {
+                    let mut samples = vec![1.0; start + 3 * length + 20];
+                    let filled = &mut samples[start..start + 3 * length];
+                    dispatch!(level, simd => fill(simd, filled, &paint));
+                    for (place, sample) in samples.into_iter().enumerate() {
+                        let expected = match place.checked_sub(start) {
+                            Some(place) if place < 3 * length => [0.25, 0.5, 0.75][place % 3],
+                            _ => 1.0,
+                        };
+                        assert_eq!(sample, expected, "{length} pixels from {start}: {place}");
+                    }
+                }
+            }
+        }
+    }
+}
