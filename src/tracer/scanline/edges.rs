@@ -4,6 +4,8 @@
 //! straight line or an ellipse on the screen, because eye rays are parallel, and so are those to
 //! the light.
 
+#[cfg(test)]
+mod bounds;
 pub(super) mod ellipse;
 pub(super) mod enclosure;
 pub(super) mod half_plane;

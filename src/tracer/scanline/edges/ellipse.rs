@@ -213,7 +213,7 @@ impl Ellipse {
 
     /// The same of the row at Y.
     #[inline(always)]
-    fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> RunEnclosure<f64> {
+    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> RunEnclosure<f64> {
         let y = S::f64s::splat(simd, y);
         let RunEnclosure { possible, certain } = self.enclose(simd, y, grid);
         RunEnclosure {

@@ -170,4 +170,19 @@ impl HalfPlane {
             }
         }
     }
+
+    /// The same of the row at Y.
+    #[cfg(test)]
+    #[inline(always)]
+    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, run: &mut RunEnclosure<f64>) {
+        let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
+        let mut lanes = RunEnclosure {
+            possible: all(run.possible),
+            certain: all(run.certain),
+        };
+        self.cut(simd, S::f64s::splat(simd, y), &mut lanes);
+        let first = |ends: [S::f64s; 2]| ends.map(|end| end.as_slice()[0]);
+        run.possible = first(lanes.possible);
+        run.certain = first(lanes.certain);
+    }
 }

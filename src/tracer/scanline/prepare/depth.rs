@@ -61,7 +61,7 @@ fn magnitudes([a, b]: [f64; 2]) -> [f64; 2] {
 
 impl FacetDepth {
     /// Its bounds in a rectangle.
-    fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
+    pub(crate) fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
         // Rounding keeps order: the extremes of a linear function are at corners.
         let [left, right] = x.map(|x| self.constant + self.column * x);
         let [low, high] = y.map(|y| self.row * y);

@@ -1,0 +1,190 @@
+//! The bounds on where rows cross edges and how deep solids lie, held against double-doubles: the
+//! truth is within each of them, and the largest error is no small part of it.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use bumpalo::Bump;
+use fearless_simd::{Level, dispatch};
+
+use crate::number::{Bounded, DoubleDouble, Real};
+use crate::random::Random;
+use crate::scene::Scene;
+use crate::stage::Stage;
+use crate::tracer::arena::Arena;
+use crate::tracer::ladder::{Ladder, Lines as _, Rung};
+use crate::tracer::pixel::Picture;
+use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::enclosure::RunEnclosure;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::prepare::depth::{Depth, Rectangle, face_plane, screen_plane};
+
+const SIZE: u32 = 500;
+
+/// The largest errors, as shares of their bounds.
+#[derive(Debug, Default)]
+struct Shares {
+    outline: f64,
+    half_plane: f64,
+    sphere_depth: f64,
+    facet_depth: f64,
+}
+
+/// The share of an enclosure's half width that the truth is away from its middle; none where the
+/// enclosure says nothing.
+fn share(truth: DoubleDouble, low: f64, high: f64) -> f64 {
+    let apart = |end: f64| (truth - DoubleDouble::exact(end)).to_f64();
+    assert!(
+        apart(low) >= 0.0 && apart(high) <= 0.0,
+        "{:e} is not from {low:e} to {high:e}",
+        truth.to_f64()
+    );
+    let half = (high - low) / 2.0;
+    if half > 0.0 && half.is_finite() {
+        (apart(low) / half - 1.0).abs()
+    } else {
+        0.0
+    }
+}
+
+/// X of a place given in columns.
+fn column_of(x: DoubleDouble, grid: Grid) -> DoubleDouble {
+    x / DoubleDouble::exact(3.0) + DoubleDouble::exact(grid.half)
+}
+
+fn check_spheres(
+    known: &Picture<'_, Bounded>,
+    truth: &Picture<'_, DoubleDouble>,
+    grid: Grid,
+    shares: &mut Shares,
+) {
+    for (sphere, exact) in known.view.spheres.iter().zip(truth.view.spheres) {
+        let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
+        let depth = Depth::of_sphere(sphere.center, &outline, sphere.support, grid);
+        for row in (0..SIZE).step_by(7) {
+            let y = grid.place(row);
+            let enclosure =
+                dispatch!(Level::baseline(), simd => outline.enclose_row(simd, y, grid));
+            let RunEnclosure { possible, certain } = enclosure;
+            // No column lies there.
+            if certain[0] >= certain[1] || certain[1] <= 0.0 {
+                continue;
+            }
+            let [three, ten] = [3.0, 10.0].map(DoubleDouble::exact);
+            let z = DoubleDouble::exact(grid.reach) - exact.center.z;
+            let y_off = DoubleDouble::exact(y) - exact.center.y;
+            let m = (ten * y_off - three * z) / DoubleDouble::exact(109.0).sqrt();
+            let half = (exact.radius.squared() - m.squared()).sqrt();
+            let ends = [exact.center.x - half, exact.center.x + half];
+            let [begin, end] = ends.map(|x| column_of(x, grid));
+            // Near the outline's top the root carries more error than the bound's slack.
+            shares.outline = shares.outline.max(share(begin, possible[0], certain[0]));
+            shares.outline = shares.outline.max(share(end, certain[1], possible[1]));
+            for column in (certain[0].ceil().max(0.0) as u32..SIZE)
+                .take_while(|column| f64::from(*column) < certain[1])
+                .step_by(11)
+            {
+                let x = grid.place(column);
+                let at = Rectangle {
+                    x: [x, x],
+                    y: [y, y],
+                };
+                let (least, most) = depth.bounds(None, at);
+                let hit = exact.first_hit(&truth.eye_ray(column, row)).unwrap();
+                if let Some(hit) = hit {
+                    let part = share(hit.depth, least, most);
+                    shares.sphere_depth = shares.sphere_depth.max(part);
+                }
+            }
+        }
+    }
+}
+
+fn check_tetrahedra(
+    known: &Picture<'_, Bounded>,
+    truth: &Picture<'_, DoubleDouble>,
+    grid: Grid,
+    shares: &mut Shares,
+) {
+    let screen = screen_plane(grid);
+    for (t, exact) in known.view.tetrahedra.iter().zip(truth.view.tetrahedra) {
+        let half_spaces = t
+            .solid
+            .met(&t.from_eye)
+            .zip(exact.solid.met(&exact.from_eye));
+        for (half_space, exact) in half_spaces {
+            let half_plane = HalfPlane::of(&half_space, &screen, grid);
+            for row in (0..SIZE).step_by(7) {
+                let y = grid.place(row);
+                let all = [0.0, f64::from(SIZE)];
+                let mut run = RunEnclosure {
+                    possible: all,
+                    certain: all,
+                };
+                dispatch!(Level::baseline(), simd => half_plane.cut_row(simd, y, &mut run));
+                let RunEnclosure { possible, certain } = run;
+                // n·(X, Y, Z) = n·a.
+                let (n, a) = (exact.normal, exact.at);
+                let rest = n.y * (a.y - DoubleDouble::exact(y))
+                    + n.z * (a.z - DoubleDouble::exact(grid.reach));
+                let root = column_of(a.x + rest / n.x, grid);
+                for (low, high) in [(possible[0], certain[0]), (certain[1], possible[1])] {
+                    if 0.0 < low && low < high && high < f64::from(SIZE) {
+                        shares.half_plane = shares.half_plane.max(share(root, low, high));
+                    }
+                }
+            }
+        }
+        for face in t.from_eye.entered() {
+            let (_, depth) = face_plane(t.solid.plane(face), grid);
+            let plane = exact.solid.plane(face);
+            for (column, row) in (0..SIZE)
+                .step_by(41)
+                .flat_map(|x| (0..SIZE).step_by(37).map(move |y| (x, y)))
+            {
+                let ray = truth.eye_ray(column, row);
+                let speed = plane.normal.dot(ray.direction.vector);
+                let exact = plane.normal.dot(plane.at - ray.origin) / speed;
+                let [x, y] = [column, row].map(|number| [grid.place(number); 2]);
+                let (least, most) = depth.bounds(Rectangle { x, y });
+                shares.facet_depth = shares.facet_depth.max(share(exact, least, most));
+            }
+        }
+    }
+}
+
+#[test]
+fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
+    let grid = Grid::new(SIZE);
+    let mut random = Random::new();
+    let mut shares = Shares::default();
+    for _ in 0..700 {
+        let mut numbers = |count: usize, reach: f64| -> Vec<f64> {
+            let mut number = || reach * (2.0 * random.fraction() - 1.0);
+            (0..count).map(|_| number()).collect()
+        };
+        let center = numbers(3, 3.0);
+        let radius = 0.4 + numbers(1, 4.0)[0].abs();
+        let vertices: Vec<Vec<f64>> = (0..4).map(|_| numbers(3, 3.6)).collect();
+        let text = format!(
+            "[[sphere]]\ncenter = {center:?}\nradius = {radius:?}\ncolor = [0.5, 0.5, 0.5]\n\
+             [[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n"
+        );
+        let scene = Scene::from_toml(&text).unwrap();
+        let alpha = numbers(1, 3.0)[0];
+        let (arena, room) = (Arena::default(), Bump::new());
+        let ladder = Ladder::new(&scene, Stage::Shading, alpha, SIZE, Rung::Double, &arena);
+        let truth = ladder.picture::<DoubleDouble>(&&room);
+        check_spheres(ladder.bounded(), &truth, grid, &mut shares);
+        check_tetrahedra(ladder.bounded(), &truth, grid, &mut shares);
+    }
+    // A bound that were ten times too small would be exceeded.
+    let Shares {
+        outline,
+        half_plane,
+        sphere_depth,
+        facet_depth,
+    } = shares;
+    let least = outline.min(half_plane).min(sphere_depth).min(facet_depth);
+    assert!(least > 0.1 && least < 1.0, "{shares:?}");
+}
