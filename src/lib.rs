@@ -73,8 +73,8 @@
 //!   `libm` in plain Rust.
 //! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which
 //!   nothing but what is certain gets into a picture, uses it where the processor has it.
-//! - No tree over the solids: rays are parallel, so every solid knows the rows and columns that it
-//!   can touch.
+//! - No tree over the solids: rays have three directions, so every solid knows the rows and columns
+//!   that it can touch, and a grid in the picture of each direction is a complete index.
 
 pub mod camera;
 pub mod difference;

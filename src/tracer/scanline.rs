@@ -16,7 +16,9 @@
 //!        fill       fill    fill         shade        fill      fill            fill
 //! ```
 //!
-//! - `prepare/` makes a frame: solids and surface, and the edges and paints that they bring.
+//! - `prepare/` makes a frame: which solids and mirror images there are (`outline`), which of them
+//!   others hide (`culling`), how each is coloured (`bodies`) and what shades it (`shadows`), and
+//!   the surface (`floor`); all of it as plain data (`prepared`) with its edges and paints.
 //! - `edges/` holds the edges on the screen at which a row may change what it shows. Eye rays are
 //!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
 //!   or of a mirror image is a straight line or an ellipse, and where it crosses a row is a root,
@@ -36,6 +38,11 @@
 //! All of this is f64 with proven bounds. A pixel that they leave in doubt is asked by itself
 //! (`ladder.rs`), by the formulas that everything here is derived from: `pixel.rs` is the
 //! definition, this is how it is computed fast.
+//!
+//! A new kind of solid, such as a cylinder, would need: a file beside `sphere.rs` for the line that
+//! meets it, an outline and a depth (`prepare/outline`, `prepare/depth`), its colours
+//! (`prepare/bodies`, and `shade/` where they vary), and its shadow on planes and on spheres
+//! (`prepare/shadows`). Everything else knows regions and depths only.
 //!
 //! What not to try again: closures given to `map` inside of vector code, which are compiled without
 //! the vector instructions around them; 16 rows at once; shading the runs of a sphere together at
