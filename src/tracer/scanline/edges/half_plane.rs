@@ -11,6 +11,7 @@ use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::tetrahedron::HalfSpace;
 
 /// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
+#[derive(Clone, Copy)]
 pub(crate) struct HalfPlane {
     constant: Bounded,
     column: Bounded,
@@ -20,6 +21,7 @@ pub(crate) struct HalfPlane {
 }
 
 /// How rows cross an edge.
+#[derive(Clone, Copy)]
 enum Crossing {
     /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is
     /// to the right of it, or to the left.
@@ -31,6 +33,7 @@ enum Crossing {
     },
 }
 
+#[derive(Clone, Copy)]
 struct Root {
     at: f64,
     per_row: f64,

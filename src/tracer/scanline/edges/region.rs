@@ -11,8 +11,11 @@
 //! A root is computed in f64 with a bound on its error, derived where it is used. The columns
 //! beyond the bound are decided; those within it, rarely one, are asked one by one.
 
+use bumpalo::Bump;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+
+use crate::tracer::arena::collect;
 
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::RunEnclosure;
@@ -38,6 +41,13 @@ impl<'f> Region<'f> {
             ellipse,
             rows,
         }
+    }
+
+    /// What it has in common with the half-planes of another region.
+    pub(crate) fn and(mut self, other: &Region<'f>, arena: &'f Bump) -> Self {
+        let both = self.half_planes.iter().chain(other.half_planes);
+        self.half_planes = collect(arena, both.copied());
+        self
     }
 
     /// The same where it is known to cross no other than these rows, or none matters.

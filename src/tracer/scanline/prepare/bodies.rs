@@ -150,7 +150,7 @@ impl<'p, 's> Bodies<'p, 's> {
         for (face, plane) in solid.facets {
             let turned_away = self.shadows && t.solid.turned_away(*face);
             let shadows = if self.shadows && !turned_away {
-                self.shadows_on_facet(solid.number, plane, parts)
+                self.shadows_on_facet(solid, plane, parts)
             } else {
                 Growing::new_in(arena)
             };
@@ -183,16 +183,18 @@ impl<'p, 's> Bodies<'p, 's> {
     /// The shadows that may fall on a facet.
     fn shadows_on_facet<'f>(
         &self,
-        number: usize,
+        solid: &Outlined<'f>,
         plane: &PixelPlane,
         parts: &Builder<'f, '_>,
     ) -> Growing<'f, Region<'f>> {
         let (arena, grid) = (parts.arena, parts.grid);
-        let casters = self.picture.scene.facts().casters[number].iter().copied();
-        let solids = shadows_on(plane, self.view, casters, |_| false, grid, arena);
-        let surface = self.surface.on_plane(number, plane, grid, arena);
+        let casters = self.picture.scene.facts().casters[solid.number].iter();
+        let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
+        let surface = self.surface.on_plane(solid.number, plane, grid, arena);
+        // Most of what shades the facet's plane falls beside the solid.
+        let within = |shadow: Region<'f>| shadow.and(&solid.outline, arena);
         let mut shadows = Growing::new_in(arena);
-        shadows.extend(solids.chain(surface));
+        shadows.extend(solids.chain(surface).map(within));
         shadows
     }
 }
