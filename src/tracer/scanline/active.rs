@@ -62,10 +62,10 @@ impl Crossing {
     }
 }
 
-/// A part of a row: up to which crossing, and what is visible there.
+/// A part of a row: before which of its crossings it ends, and what is visible there.
 #[derive(Clone, Copy)]
 struct Span {
-    to: Crossing,
+    to: u32,
     visible: Packed,
 }
 
@@ -79,6 +79,8 @@ pub(crate) struct ActiveEdges {
     coverage: Coverage,
     /// The first of the rows that are crossed.
     first: Option<u32>,
+    /// The first column after a row.
+    size: u32,
     /// How each edge crosses them.
     crosses: Vec<Crosses>,
     /// Bit by bit, 64 in a word, those that do.
@@ -87,6 +89,8 @@ pub(crate) struct ActiveEdges {
     places: Vec<[u32; ROWS]>,
     /// In the order of the row that was entered last.
     crossings: Vec<Crossing>,
+    /// The places of these, and the row's end: side by side, for those who go through all.
+    at: Vec<[u32; ROWS]>,
     /// What is visible before each of them, and after the last.
     visible: Vec<Packed>,
     /// The columns of these in that row.
@@ -101,7 +105,6 @@ pub(crate) struct ActiveEdges {
     has_spans: bool,
     /// The places in `visible` where nobody has looked.
     open: Vec<usize>,
-    end: Crossing,
     /// Edges whose crossings are not, or no longer, those in `crossings`.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
@@ -126,10 +129,8 @@ impl ActiveEdges {
         self.crosses.resize(count, Crosses::No);
         self.crossing.clear();
         self.crossing.resize(edges.words(), 0);
-        self.places.resize(4 * count + 4, [0; ROWS]);
-        // The end of every row is a crossing of no edge.
-        self.end = Crossing(4 * count as u32);
-        self.places[4 * count] = [grid.size; ROWS];
+        self.places.resize(4 * count, [0; ROWS]);
+        self.size = grid.size;
         self.is_changed.clear();
         self.is_changed.resize(count, false);
         self.coverage.clear(edges);
@@ -185,34 +186,28 @@ impl ActiveEdges {
     /// Where a part of a row ends, and what is visible there.
     pub(crate) fn span(&self, number: usize, row: u32) -> (u32, Visible) {
         let Span { to, visible } = self.spans[number + 1];
-        (
-            self.places[to.0 as usize][row as usize % ROWS],
-            visible.visible(),
-        )
-    }
-
-    /// The crossing after as many others, or the row's end.
-    fn crossing(&self, number: usize) -> Crossing {
-        self.crossings.get(number).copied().unwrap_or(self.end)
+        let to = self.at[to as usize][row as usize % ROWS];
+        (to, visible.visible())
     }
 
     /// Sees to it that the crossings come in the order of a row. Returns how often two have changed
     /// places.
     fn order(&mut self, row: usize) -> usize {
-        let place = |crossing: &Crossing| self.places[crossing.0 as usize][row];
+        let places = &self.at[..self.crossings.len()];
         self.here.clear();
-        self.here.extend(self.crossings.iter().map(place));
+        self.here.extend(places.iter().map(|places| places[row]));
         let mut changes = 0;
         for i in 1..self.here.len() {
             let place = self.here[i];
             if self.here[i - 1] <= place {
                 continue;
             }
-            let crossing = self.crossings[i];
+            let (crossing, at) = (self.crossings[i], self.at[i]);
             let mut to = i;
             while to > 0 && self.here[to - 1] > place {
                 self.here[to] = self.here[to - 1];
                 self.crossings[to] = self.crossings[to - 1];
+                self.at[to] = self.at[to - 1];
                 // Between the two, one was crossed before, and now the other.
                 self.visible[to] = Packed::OPEN;
                 to -= 1;
@@ -220,6 +215,7 @@ impl ActiveEdges {
             }
             self.here[to] = place;
             self.crossings[to] = crossing;
+            self.at[to] = at;
         }
         self.has_spans &= changes == 0;
         changes
@@ -231,7 +227,7 @@ impl ActiveEdges {
         // What comes next is not to be foreseen: every step does the same, and counts or does not
         // count.
         let nothing = Span {
-            to: self.end,
+            to: self.crossings.len() as u32,
             visible: Packed::OPEN,
         };
         self.spans.clear();
@@ -244,15 +240,11 @@ impl ActiveEdges {
             let is_open = visible == Packed::OPEN;
             self.open[open] = gap;
             open += usize::from(is_open);
-            let (to, now) = (
-                self.crossings.get(gap).copied().unwrap_or(self.end),
-                visible,
-            );
-            let is_new = !is_open & (now != last.visible);
+            let is_new = !is_open & (visible != last.visible);
             spans += usize::from(is_new);
             last = Span {
-                to: if is_open { last.to } else { to },
-                visible: if is_open { last.visible } else { now },
+                to: if is_open { last.to } else { gap as u32 },
+                visible: if is_open { last.visible } else { visible },
             };
             self.spans[spans] = last;
         }
@@ -262,10 +254,10 @@ impl ActiveEdges {
         let mut wanting = mask32x8::splat(simd, false);
         for &gap in &self.open {
             let from = match gap.checked_sub(1) {
-                Some(before) => &self.places[self.crossings[before].0 as usize],
+                Some(before) => &self.at[before],
                 None => &[0; ROWS],
             };
-            let to = &self.places[self.crossing(gap).0 as usize];
+            let to = &self.at[gap];
             let (from, to) = (u32x8::from_slice(simd, from), u32x8::from_slice(simd, to));
             wanting |= from.simd_lt(to);
         }
@@ -281,7 +273,7 @@ impl ActiveEdges {
     ) {
         let mut from = 0;
         for gap in 0..self.visible.len() {
-            let to = self.places[self.crossing(gap).0 as usize][row];
+            let to = self.at[gap][row];
             if self.visible[gap] == Packed::OPEN && from < to {
                 self.visible[gap] = Packed::new(look(&self.coverage));
             }
@@ -319,6 +311,11 @@ impl ActiveEdges {
         if !self.changed.is_empty() {
             self.change();
         }
+        let places = self.crossings.iter();
+        let places = places.map(|crossing| self.places[crossing.0 as usize]);
+        self.at.clear();
+        self.at.extend(places);
+        self.at.push([self.size; ROWS]);
         // Columns may have come between other crossings.
         self.has_spans &= self.open.is_empty();
     }
@@ -402,8 +399,8 @@ impl ActiveEdges {
     fn find_disorder<S: Simd>(&mut self, simd: S) {
         let mut disordered = mask32x8::splat(simd, false);
         let mut before = u32x8::splat(simd, 0);
-        for crossing in &self.crossings {
-            let place = u32x8::from_slice(simd, &self.places[crossing.0 as usize]);
+        for place in &self.at {
+            let place = u32x8::from_slice(simd, place);
             disordered |= before.simd_gt(place);
             before = place;
         }
