@@ -146,7 +146,7 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
     ) -> Result<(), TraceError> {
-        self.trace_frame(scene, stage, alpha, image, None, Extent::Whole)
+        self.trace_frame(scene, stage, alpha, image, None, Update::Whole)
     }
 
     /// The same picture, into an image that may hold the frame that this tracer left there before:
@@ -182,7 +182,7 @@ impl Tracer {
         self.memory
             .iter_mut()
             .for_each(|row| row.is_written = false);
-        self.trace_frame(scene, stage, alpha, image, None, Extent::Changes)?;
+        self.trace_frame(scene, stage, alpha, image, None, Update::Changes)?;
         let is_written = |row: &RowHistory| row.is_written;
         let first = self.memory.iter().position(is_written);
         let last = self.memory.iter().rposition(is_written);
@@ -210,7 +210,7 @@ impl Tracer {
             alpha,
             image,
             Some(&mut decisions),
-            Extent::Whole,
+            Update::Whole,
         )?;
         Ok(decisions)
     }
@@ -264,7 +264,7 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
-        extent: Extent,
+        update: Update,
     ) -> Result<(), TraceError> {
         if !alpha.is_finite() {
             return Err(TraceError::Angle(alpha));
@@ -276,7 +276,7 @@ impl Tracer {
             tracer: self,
             image,
             decisions,
-            extent,
+            update,
         };
         let traced = with_frame(kernel, frame, &arena, work);
         *inner(&mut self.arena) = arena;
@@ -288,15 +288,15 @@ impl Tracer {
         &mut self,
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
-        extent: Extent,
+        update: Update,
         trace: impl FnOnce(&mut Tracer, Target<'_>) -> InDoubt,
     ) {
         self.progress.begin();
         let size = image.size();
         let mut memory = std::mem::take(&mut self.memory);
-        let (remembered, samples) = match extent {
-            Extent::Whole => (None, image.samples_mut()),
-            Extent::Changes => {
+        let (remembered, samples) = match update {
+            Update::Whole => (None, image.samples_mut()),
+            Update::Changes => {
                 let known = self.frame != 0 && image.frame() == self.frame;
                 if !known {
                     memory.iter_mut().for_each(RowHistory::clear);
@@ -410,7 +410,7 @@ struct TraceFrame<'t> {
     tracer: &'t mut Tracer,
     image: &'t mut Image,
     decisions: Option<&'t mut [Decision]>,
-    extent: Extent,
+    update: Update,
 }
 
 impl FrameWork for TraceFrame<'_> {
@@ -421,13 +421,13 @@ impl FrameWork for TraceFrame<'_> {
             tracer.trace_rows(pixels, precision, target, arena)
         };
         let tracer = self.tracer;
-        tracer.trace_into(self.image, self.decisions, self.extent, trace);
+        tracer.trace_into(self.image, self.decisions, self.update, trace);
     }
 
     fn by_pixels(self, pixels: &impl Pixels) {
         let trace = |tracer: &mut Tracer, target: Target<'_>| tracer.trace_pixels(pixels, target);
         let tracer = self.tracer;
-        tracer.trace_into(self.image, self.decisions, self.extent, trace);
+        tracer.trace_into(self.image, self.decisions, self.update, trace);
     }
 }
 
@@ -485,7 +485,7 @@ struct Local {
 
 /// How much of an image is written.
 #[derive(Clone, Copy)]
-enum Extent {
+enum Update {
     Whole,
     /// What differs from the frame before.
     Changes,
