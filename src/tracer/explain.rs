@@ -9,7 +9,7 @@ use super::decision::{Decision, Seen};
 use super::line::{Hit, Line};
 use super::pixel::{Picture, Pixel};
 use super::vector::Vector;
-use super::view::{Reach, Solids, View};
+use super::view::{Solids, View};
 use crate::image::display_byte;
 use crate::number::Real;
 use crate::scene::Scene;
@@ -113,10 +113,8 @@ impl<R: Real> Picture<'_, R> {
             Stage::Tetrahedron => Solids::Tetrahedra,
             _ => Solids::All,
         };
-        let first = self
-            .view
-            .first_hit((column, row), &ray, Reach::Line, solids)?;
-        for (solid, hit) in self.view.hits((column, row), &ray, Reach::Line, solids)? {
+        let first = self.view.first_hit((column, row), &ray, None, solids)?;
+        for (solid, hit) in self.view.hits((column, row), &ray, false, solids)? {
             let rank = if first.as_ref().is_some_and(|(nearest, _)| *nearest == solid) {
                 ", first of the solids"
             } else {
@@ -164,7 +162,7 @@ impl<R: Real> Picture<'_, R> {
             (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
             (Decision::Solid(seen), _) => {
                 say(text, "shows", self.name(usize::from(seen.solid), seen.face));
-                self.explain_solid(text, &self.view, ((column, row), &ray), Reach::Line, seen)?;
+                self.explain_solid(text, &self.view, ((column, row), &ray), false, seen)?;
             }
             (_, Some(floor)) => {
                 let (_, point) = self.surface_point(floor, &ray, row);
@@ -188,7 +186,7 @@ impl<R: Real> Picture<'_, R> {
                     for (solid, hit) in
                         mirror
                             .view
-                            .hits((column, row), &looking, Reach::Ahead, Solids::All)?
+                            .hits((column, row), &looking, true, Solids::All)?
                     {
                         let t = Short(self.parameter(&looking, &hit));
                         say(
@@ -205,13 +203,7 @@ impl<R: Real> Picture<'_, R> {
                             self.name(usize::from(seen.solid), seen.face)
                         ),
                     );
-                    self.explain_solid(
-                        text,
-                        &mirror.view,
-                        ((column, row), &looking),
-                        Reach::Ahead,
-                        seen,
-                    )?;
+                    self.explain_solid(text, &mirror.view, ((column, row), &looking), true, seen)?;
                     say(text, "reflectance", Short(mirror.reflectance.to_f64()));
                 } else if decision == Decision::Surface && floor.mirror.is_some() {
                     say(
@@ -233,16 +225,15 @@ impl<R: Real> Picture<'_, R> {
         text: &mut String,
         view: &View<'_, R>,
         (pixel, ray): ((u32, u32), &Line<R>),
-        reach: Reach,
+        mirrored: bool,
         seen: Seen,
     ) -> Result<(), R::Doubt> {
         let solid = usize::from(seen.solid);
         let only = view
-            .hits(pixel, ray, reach, Solids::All)?
+            .hits(pixel, ray, mirrored, Solids::All)?
             .into_iter()
             .find(|(index, _)| *index == solid);
         let Some((_, hit)) = only else { return Ok(()) };
-        let mirrored = reach == Reach::Ahead;
         let upright = |[x, y, z]: [f64; 3]| if mirrored { [x, -y, z] } else { [x, y, z] };
         let height = self
             .floor

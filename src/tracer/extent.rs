@@ -27,10 +27,15 @@ pub(super) struct Extents<'f> {
     pub(super) casters_on_surface: Option<CastersOnSurface<'f>>,
 }
 
-/// The extents of all solids, and which of them reach each tile of the screen.
+/// The extents of all solids, and which of them reach each tile of the screen, the nearest first.
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [Extent],
+    /// For each solid the least that 109 t − 3 Y is where an eye ray meets it, from below: t is the
+    /// ray's parameter, Y that of its pixel.
+    nearest: &'f [f64],
+    /// N/2.
+    half: f64,
     /// Pixels along a side of a tile.
     side: u32,
     across: u32,
@@ -46,13 +51,15 @@ const FEW: usize = 16;
 impl<'f> ExtentsOfSolids<'f> {
     const NONE: ExtentsOfSolids<'static> = ExtentsOfSolids {
         all: &[],
+        nearest: &[],
+        half: 0.0,
         side: 1,
         across: 1,
         starts: &[],
         solids: &[],
     };
 
-    fn new(all: &'f [Extent], size: u32, arena: &'f Bump) -> Self {
+    fn new(all: &'f [Extent], nearest: &'f [f64], size: u32, arena: &'f Bump) -> Self {
         let tiles = if all.len() > FEW { TILES } else { 1 };
         let side = size.div_ceil(tiles);
         let across = size.div_ceil(side);
@@ -81,15 +88,19 @@ impl<'f> ExtentsOfSolids<'f> {
             *start = end;
         }
         let solids = arena.alloc_slice_fill_copy(end as usize, 0);
-        // Each tile is filled from its end, so that its solids come in their order.
-        for (solid, extent) in all.iter().enumerate().rev() {
-            for tile in reached(extent) {
+        // Each tile is filled from its end: the farthest first.
+        let order = arena.alloc_slice_fill_iter((0..all.len()).map(|solid| solid as u16));
+        order.sort_by(|a, b| nearest[usize::from(*b)].total_cmp(&nearest[usize::from(*a)]));
+        for &mut solid in order {
+            for tile in reached(&all[usize::from(solid)]) {
                 starts[tile] -= 1;
-                solids[starts[tile] as usize] = solid as u16;
+                solids[starts[tile] as usize] = solid;
             }
         }
         ExtentsOfSolids {
             all,
+            nearest,
+            half: f64::from(size) / 2.0,
             side,
             across,
             starts,
@@ -97,12 +108,25 @@ impl<'f> ExtentsOfSolids<'f> {
         }
     }
 
+    /// Y of a row.
+    pub(super) fn place(&self, row: u32) -> f64 {
+        3.0 * (f64::from(row) - self.half)
+    }
+
     /// Where a solid can be seen.
     pub(super) fn of(&self, solid: usize) -> &'f Extent {
         &self.all[solid]
     }
 
-    /// The solids that can be seen in a pixel, in their order.
+    /// A parameter before which the eye ray of a pixel does not meet a solid; it does not get less
+    /// from a solid to the next that [`ExtentsOfSolids::at`] tells.
+    pub(super) fn least_depth(&self, solid: usize, y: f64) -> f64 {
+        let depth = (self.nearest[solid] + 3.0 * y) / 109.0;
+        // 3 Y is a whole number of halves; the sum and the quotient round by u each.
+        depth - 2.0 * f64::EPSILON * depth.abs()
+    }
+
+    /// The solids that can be seen in a pixel, the nearest first.
     pub(super) fn at(&self, (column, row): (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
         let tile = (row / self.side * self.across + column / self.side) as usize;
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
@@ -202,7 +226,24 @@ impl<'f> Extents<'f> {
                 .iter()
                 .map(|t| Extent::of(&t.vertices.map(place), none, none, size));
             let all = collect(arena, spheres.chain(tetrahedra));
-            ExtentsOfSolids::new(all, size, arena)
+            // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
+            let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+            let toward = |p: Vector<Bounded>| three * p.y + ten * p.z;
+            let screen = Bounded::exact(15.0 * f64::from(size));
+            let root = Bounded::exact(109.0).sqrt();
+            let spheres = scene.spheres().iter().map(|sphere| {
+                let reach = Bounded::exact(sphere.radius) * frame.scale * root;
+                (screen - toward(place(sphere.center)) - reach).at_least()
+            });
+            let tetrahedra = scene.tetrahedra().iter().map(|t| {
+                let vertices = t.vertices.map(|vertex| screen - toward(place(vertex)));
+                vertices
+                    .map(Bounded::at_least)
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min)
+            });
+            let nearest = collect(arena, spheres.chain(tetrahedra));
+            ExtentsOfSolids::new(all, nearest, size, arena)
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {

@@ -13,7 +13,7 @@ use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
-use super::view::{FrameBearings, Reach, Solids, View};
+use super::view::{FrameBearings, Solids, View};
 use crate::number::{Real, all, any};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -170,9 +170,7 @@ impl<'f, R: Real> Picture<'f, R> {
     /// Stages 2 to 4: the first hit, without shadows.
     fn solid_alone(&self, column: u32, row: u32, solids: Solids) -> Decided<R> {
         let ray = self.eye_ray(column, row);
-        let hit = self
-            .view
-            .first_hit((column, row), &ray, Reach::Line, solids)?;
+        let hit = self.view.first_hit((column, row), &ray, None, solids)?;
         Ok(match hit {
             Some((solid, hit)) => {
                 let lit = self.stage == Stage::Shading && hit.face.is_none();
@@ -190,7 +188,7 @@ impl<'f, R: Real> Picture<'f, R> {
         let ray = self.eye_ray(column, row);
         let hit = self
             .view
-            .first_hit((column, row), &ray, Reach::Line, Solids::All)?;
+            .first_hit((column, row), &ray, None, Solids::All)?;
         if let Some(floor) = self
             .floor
             .as_ref()
@@ -205,7 +203,7 @@ impl<'f, R: Real> Picture<'f, R> {
             };
             let contains = || floor.surface.contains(point);
             if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
-                return self.surface_at(floor, (column, row), point);
+                return self.surface_at(floor, (column, row), depth, point);
             }
         }
         Ok(match hit {
@@ -237,7 +235,13 @@ impl<'f, R: Real> Picture<'f, R> {
     }
 
     /// The surface where it is seen: in shadow, mirroring, or plain.
-    fn surface_at(&self, floor: &Floor<'_, R>, pixel: (u32, u32), point: Vector<R>) -> Decided<R> {
+    fn surface_at(
+        &self,
+        floor: &Floor<'_, R>,
+        pixel: (u32, u32),
+        depth: R,
+        point: Vector<R>,
+    ) -> Decided<R> {
         let leaves = floor.surface.support;
         let to_light = self.view.ray_to_light(point, leaves);
         if self
@@ -256,7 +260,7 @@ impl<'f, R: Real> Picture<'f, R> {
             if let Some((solid, hit)) =
                 mirror
                     .view
-                    .first_hit(pixel, &ray, Reach::Ahead, Solids::All)?
+                    .first_hit(pixel, &ray, Some(depth), Solids::All)?
             {
                 let in_shadow = self.in_shadow(&mirror.view, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);

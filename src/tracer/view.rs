@@ -135,13 +135,6 @@ pub(super) struct TetrahedronInView<R> {
     pub(super) from_light: Sight<R>,
 }
 
-/// Which rays are meant: the whole line, or only what lies at t > 0.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Reach {
-    Line,
-    Ahead,
-}
-
 /// Which solids take part.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Solids {
@@ -213,32 +206,47 @@ impl<'f, R: Real> View<'f, R> {
             .normal(face)
     }
 
-    /// The first solid along the eye ray of `pixel`, or along a ray that goes on from it, and where
-    /// it is hit; of solids hit at once, the earliest in the scene's order.
+    /// The first solid along the eye ray of `pixel`, or along the rest of it that goes on `from` a
+    /// point of it at a parameter, and where it is hit; of solids hit at once, the earliest in the
+    /// scene's order.
     pub(super) fn first_hit(
         &self,
-        pixel: (u32, u32),
+        (column, row): (u32, u32),
         ray: &Line<R>,
-        reach: Reach,
+        from: Option<R>,
         solids: Solids,
     ) -> Result<Option<(usize, Hit<R>)>, R::Doubt> {
+        let y = self.extents.place(row);
         let mut first: Option<(usize, Hit<R>)> = None;
-        self.each_hit(pixel, ray, reach, solids, |solid, hit| {
-            let nearer = match &first {
-                Some((_, other)) if other.support == hit.support => false,
+        for solid in self.extents.at((column, row)) {
+            if let Some((_, hit)) = &first {
+                let least = self.extents.least_depth(solid, y);
+                let is_behind = least.is_finite() && {
+                    let least = R::exact(least);
+                    let least = from.map_or(least, |from| least - from);
+                    (least - hit.depth).sign().is_ok_and(Ordering::is_gt)
+                };
+                if is_behind {
+                    // And so are all that follow.
+                    break;
+                }
+            }
+            let Some(hit) = self.hit(solid, ray, from.is_some(), solids)? else {
+                continue;
+            };
+            let order = match &first {
+                Some((_, other)) if other.support == hit.support => Ordering::Equal,
                 Some((number, other)) => {
                     let order = (hit.depth - other.depth).sign();
-                    order
-                        .or_else(|doubt| self.compare_abreast(solid, *number, ray, doubt))?
-                        .is_lt()
+                    order.or_else(|doubt| self.compare_abreast(solid, *number, ray, doubt))?
                 }
-                None => true,
+                None => Ordering::Less,
             };
-            if nearer {
+            let is_earlier = first.as_ref().is_some_and(|(number, _)| solid < *number);
+            if order.is_lt() || (order.is_eq() && is_earlier) {
                 first = Some((solid, hit));
             }
-            Ok(())
-        })?;
+        }
         Ok(first)
     }
 
@@ -257,54 +265,52 @@ impl<'f, R: Real> View<'f, R> {
         }
     }
 
-    fn each_hit(
+    /// Where a ray meets a solid, if that takes part: anywhere on its line, or only `ahead`.
+    fn hit(
         &self,
-        pixel: (u32, u32),
+        solid: usize,
         ray: &Line<R>,
-        reach: Reach,
+        ahead: bool,
         solids: Solids,
-        mut meet: impl FnMut(usize, Hit<R>) -> Result<(), R::Doubt>,
-    ) -> Result<(), R::Doubt> {
-        for solid in self.extents.at(pixel) {
-            let hit = match self.spheres.get(solid) {
-                Some(sphere) => {
-                    let takes_part = solids != Solids::Tetrahedra
-                        && (reach == Reach::Line || sphere.is_ahead(ray)?);
-                    if takes_part {
-                        sphere.first_hit(ray)?
-                    } else {
-                        None
-                    }
+    ) -> Result<Option<Hit<R>>, R::Doubt> {
+        match self.spheres.get(solid) {
+            Some(sphere) => {
+                let takes_part =
+                    solids != Solids::Tetrahedra && (!ahead || sphere.is_ahead(ray)?);
+                if takes_part {
+                    sphere.first_hit(ray)
+                } else {
+                    Ok(None)
                 }
-                None => {
-                    let t = &self.tetrahedra[solid - self.spheres.len()];
-                    let takes_part = solids != Solids::Spheres
-                        && (reach == Reach::Line || t.solid.is_ahead(&t.from_eye, ray)?);
-                    if takes_part {
-                        t.solid.first_hit(&t.from_eye, ray)?
-                    } else {
-                        None
-                    }
+            }
+            None => {
+                let t = &self.tetrahedra[solid - self.spheres.len()];
+                let takes_part =
+                    solids != Solids::Spheres && (!ahead || t.solid.is_ahead(&t.from_eye, ray)?);
+                if takes_part {
+                    t.solid.first_hit(&t.from_eye, ray)
+                } else {
+                    Ok(None)
                 }
-            };
-            hit.map_or(Ok(()), |hit| meet(solid, hit))?;
+            }
         }
-        Ok(())
     }
 
-    /// Every solid that takes part and that the ray meets, in the scene's order.
+    /// Every solid that takes part and that the ray of a pixel meets, in the scene's order.
     pub(super) fn hits(
         &self,
         pixel: (u32, u32),
         ray: &Line<R>,
-        reach: Reach,
+        ahead: bool,
         solids: Solids,
     ) -> Result<Vec<(usize, Hit<R>)>, R::Doubt> {
         let mut all = Vec::new();
-        self.each_hit(pixel, ray, reach, solids, |solid, hit| {
-            all.push((solid, hit));
-            Ok(())
-        })?;
+        for solid in self.extents.at(pixel) {
+            if let Some(hit) = self.hit(solid, ray, ahead, solids)? {
+                all.push((solid, hit));
+            }
+        }
+        all.sort_by_key(|(solid, _)| *solid);
         Ok(all)
     }
 
