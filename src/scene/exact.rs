@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::casters::{SurfaceCasters, casters};
+use super::casters::{Casters, SurfaceCasters};
 use super::hidden::hidden;
 use super::rational::{Plane, cross, dot, exact, minus, sign};
 use super::{Sphere, Surface, Tetrahedron};
@@ -41,9 +41,8 @@ pub(crate) struct Facts {
     /// For each solid, spheres first, whether another one hides all of it, so that neither it nor
     /// its shadow is seen where all solids take part.
     pub(crate) hidden: Vec<bool>,
-    /// For each solid, spheres first, the others that may stand between a point of it and the
-    /// light; of hidden ones nobody asks.
-    pub(crate) casters: Vec<Vec<u16>>,
+    /// The solids that may stand between a point of another one and the light.
+    pub(crate) casters: Casters,
     /// The solids that may stand between a point of the surface and the light.
     pub(crate) surface_casters: Option<SurfaceCasters>,
 }
@@ -110,12 +109,11 @@ impl Facts {
             }))
             .collect();
         let hidden = hidden(spheres, tetrahedra);
-        let casters = casters(spheres, tetrahedra, -direction, &hidden);
         let surface_casters = surface
             .map(|surface| SurfaceCasters::new(spheres, tetrahedra, surface, -direction, &hidden));
 
         let mut same_spheres = HashMap::new();
-        let spheres = spheres.iter().map(|sphere| {
+        let sphere_supports = spheres.iter().map(|sphere| {
             let key = [
                 sphere.center.x,
                 sphere.center.y,
@@ -125,7 +123,7 @@ impl Facts {
             .map(f64::to_bits);
             *same_spheres.entry(key).or_insert_with(&mut number)
         });
-        let spheres = spheres.collect();
+        let sphere_supports = sphere_supports.collect();
 
         let to_light = exact(-direction);
         let mut same_planes = HashMap::new();
@@ -152,8 +150,9 @@ impl Facts {
                 .coefficients(),
             )
         });
+        let casters = Casters::new(spheres, tetrahedra, -direction, &hidden, &facing_light);
         Facts {
-            spheres,
+            spheres: sphere_supports,
             faces,
             surface,
             facing_light,

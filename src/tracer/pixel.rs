@@ -274,7 +274,9 @@ impl<'f, R: Real> Picture<'f, R> {
     fn in_shadow(&self, view: &View<'_, R>, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
         let ray = view.ray_to_light(hit.point, hit.support);
         let turned_away = || view.shading.facing_light(&hit.normal).map(Ordering::is_le);
-        let by_solid = || view.is_shadowed_by(&self.scene.facts().casters[solid], &ray);
+        let casters = &self.scene.facts().casters;
+        let casters = casters.on(solid, hit.face.map(usize::from));
+        let by_solid = || view.is_shadowed_by(casters, &ray);
         let by_surface = || {
             self.floor
                 .as_ref()

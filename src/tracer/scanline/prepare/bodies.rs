@@ -126,7 +126,7 @@ impl<'p, 's> Bodies<'p, 's> {
         let row_sphere = RowSphere::new(sphere, outline, lighting, own, self.shadows);
         let casters = if self.shadows {
             let facts = self.picture.scene.facts();
-            let solids = &facts.casters[number];
+            let solids = facts.casters.on(number, None);
             let solids = casters_on(&row_sphere, number, self.view, lighting, solids, arena);
             let surface = self.surface.on_sphere(number, &row_sphere, lighting, arena);
             collect(arena, solids.chain(surface))
@@ -150,7 +150,7 @@ impl<'p, 's> Bodies<'p, 's> {
         for (face, plane) in solid.facets {
             let turned_away = self.shadows && t.solid.turned_away(*face);
             let shadows = if self.shadows && !turned_away {
-                self.shadows_on_facet(solid, plane, parts)
+                self.shadows_on_facet(solid, (*face, plane), parts)
             } else {
                 Growing::new_in(arena)
             };
@@ -184,11 +184,12 @@ impl<'p, 's> Bodies<'p, 's> {
     fn shadows_on_facet<'f>(
         &self,
         solid: &Outlined<'f>,
-        plane: &PixelPlane,
+        (face, plane): (usize, &PixelPlane),
         parts: &Builder<'f, '_>,
     ) -> Growing<'f, Region<'f>> {
         let (arena, grid) = (parts.arena, parts.grid);
-        let casters = self.picture.scene.facts().casters[solid.number].iter();
+        let casters = &self.picture.scene.facts().casters;
+        let casters = casters.on(solid.number, Some(face)).iter();
         let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most of what shades the facet's plane falls beside the solid.
