@@ -10,7 +10,10 @@
 //! A sample of time is a whole round of frames, divided by filling the same picture with one colour
 //! as often, by the fastest stores there are; both alternate, so that a slow moment of the machine
 //! hits both.
+//!
+//! How time grows with the number of spheres is measured on crowds, scenes that are made for that.
 
+mod crowd;
 mod errors;
 mod fill;
 mod hard;
@@ -19,6 +22,7 @@ mod machine;
 mod measure;
 mod pipeline;
 mod plot;
+mod scaling;
 mod table;
 
 use std::ops::RangeInclusive;
@@ -27,14 +31,18 @@ use std::path::Path;
 use crate::camera::frame_angle;
 use crate::image::whole_file::WholeFile;
 use crate::image::{ImageError, SaveError};
+use crate::scene::SceneError;
 use crate::tracer::{Decision, TraceError};
 use crate::{Image, Kernel, Scene, Stage, Tracer};
+pub use crowd::MAX_CROWD;
 use errors::Errors;
 use hard::HARD_SCENES;
 use machine::{Machine, cores};
-use measure::{Filler, Spread, Timing};
+use measure::{Filler, MIN_SAMPLES, Spread, Timing};
 use pipeline::{Frames, Pipeline};
 pub use plot::PlotError;
+pub use scaling::CROWD_KERNELS;
+use scaling::{Scaling, Series};
 
 /// Where a scene comes from; the plot has a panel for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -97,6 +105,9 @@ pub struct Request {
     pub frames: RangeInclusive<u64>,
     /// The number of threads to measure beside one; 0 is one a core.
     pub threads: usize,
+    /// How many spheres each crowd has, 1 to [`MAX_CROWD`]. The kernels of [`CROWD_KERNELS`] are
+    /// timed on the crowds and on the built-in scene, in the first of the stages.
+    pub crowds: Vec<u16>,
 }
 
 /// How far the measuring is.
@@ -124,6 +135,8 @@ pub struct Report {
     fills: Vec<String>,
     /// Each kernel on each scene in each stage.
     rows: Vec<Row>,
+    /// Each kernel on the built-in scene and on each crowd; empty without crowds.
+    scalings: Vec<Scaling>,
     /// What it costs to display a frame, once that is measured.
     pipelines: Vec<Pipeline>,
 }
@@ -159,6 +172,9 @@ pub enum ReportError {
     /// It cannot be traced, for another reason than that a kernel refuses a scene.
     #[error(transparent)]
     Trace(#[from] TraceError),
+    /// There is no crowd of that many spheres.
+    #[error("a crowd: {0}")]
+    Crowd(#[from] SceneError),
 }
 
 /// Measures the kernels as requested, and tells `progress` before each step.
@@ -168,7 +184,7 @@ pub enum ReportError {
 /// shown before.
 ///
 /// # Errors
-/// [`ReportError`] where there is no room for the pictures, or no threads.
+/// [`ReportError`] where there is no room for the pictures, or no threads, or a crowd is too large.
 pub fn measure(
     request: &Request,
     progress: &mut dyn FnMut(Progress<'_>),
@@ -183,6 +199,10 @@ pub fn measure(
     }
     let angles: Vec<f64> = request.frames.clone().map(frame_angle).collect();
     let views = request.scenes.len() * request.stages.len();
+    let crowds = match request.crowds.len() {
+        0 => 0,
+        crowds => crowd_kernels(request).count() * (1 + crowds) * MIN_SAMPLES * counts.len(),
+    };
     let measurement = Measurement {
         request,
         threads,
@@ -192,13 +212,20 @@ pub fn measure(
         // number of threads.
         steps: Steps {
             done: 0,
-            of: (views * angles.len() * (1 + request.kernels.len() * (1 + 3 * counts.len())))
+            of: (angles.len()
+                * (crowds + views * (1 + request.kernels.len() * (1 + 3 * counts.len()))))
                 as u64,
             progress,
         },
         angles,
     };
     measurement.report(&counts)
+}
+
+/// The kernels among those requested that crowds are measured with.
+fn crowd_kernels(request: &Request) -> impl Iterator<Item = Kernel> {
+    let kernels = request.kernels.iter().copied();
+    kernels.filter(|kernel| CROWD_KERNELS.contains(kernel))
 }
 
 /// A measurement in progress.
@@ -257,6 +284,7 @@ impl Measurement<'_> {
                 }
             }
         }
+        let scalings = self.scalings(counts)?;
         Ok(Report {
             machine: Machine::this(),
             size: self.request.size,
@@ -264,6 +292,7 @@ impl Measurement<'_> {
             threads: self.threads,
             fills: fillers.iter().map(|(_, filler)| filler.how()).collect(),
             rows,
+            scalings,
             pipelines: Vec::new(),
         })
     }
@@ -329,6 +358,32 @@ impl Measurement<'_> {
             )?);
         }
         Ok(timings)
+    }
+
+    /// The times on the built-in scene and on the crowds; nothing where no crowd is requested.
+    fn scalings(&mut self, counts: &[usize]) -> Result<Vec<Scaling>, ReportError> {
+        let request = self.request;
+        let (false, Some(&stage)) = (request.crowds.is_empty(), request.stages.first()) else {
+            return Ok(Vec::new());
+        };
+        let mut scenes = vec![Scene::builtin()];
+        for &spheres in &request.crowds {
+            scenes.push(crowd::scene(spheres)?);
+        }
+        let series = Series {
+            kernels: &crowd_kernels(request).collect::<Vec<_>>(),
+            scenes: &scenes,
+            stage,
+            angles: &self.angles,
+        };
+        let (steps, frames) = (&mut self.steps, self.angles.len());
+        let mut next = |next: &str| steps.next(next, frames);
+        Ok(scaling::measure(
+            &series,
+            counts,
+            &mut self.image,
+            &mut next,
+        )?)
     }
 }
 

@@ -177,6 +177,100 @@ fn the_table_has_every_row_and_no_line_longer_than_another_of_its_kind() {
     assert!(!table.contains("2 threads"), "{table}");
 }
 
+/// What the JSON says of a kernel on a crowd or on the built-in scene.
+struct Scaling {
+    /// Scene, number of spheres, kernel.
+    name: (String, u64, String),
+    threads: u64,
+    ms: f64,
+    ratio: f64,
+}
+
+fn scalings(report: &Value) -> Vec<Scaling> {
+    let rows = report["crowds"].as_array().unwrap().iter();
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let scalings = rows.map(|row| {
+        let [min, ms, max] = ["min", "median", "max"].map(|end| row["ms"][end].as_f64().unwrap());
+        assert!(0.0 < min && min <= ms && ms <= max, "{row}");
+        assert!(row["samples"].as_u64() >= Some(3), "{row}");
+        assert_eq!(
+            (&row["stage"], &row["size"], &row["frames"]),
+            (&5.into(), &16.into(), &2.into())
+        );
+        Scaling {
+            name: (
+                text(&row["scene"]),
+                row["spheres"].as_u64().unwrap(),
+                text(&row["kernel"]),
+            ),
+            threads: row["threads"].as_u64().unwrap(),
+            ms,
+            ratio: row["ratio"].as_f64().unwrap(),
+        }
+    });
+    scalings.collect()
+}
+
+const CROWDS: &str = "--crowd 90,3,90 --size 16 --frames 0..1 --threads 2 --stage 5 --stage 1 \
+                      --kernel listing --kernel double --kernel exact";
+
+#[test]
+fn each_crowd_has_its_time_by_that_of_the_built_in_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = report(&folder, &format!("{CROWDS} --json r.json"));
+    let report = json(&folder, "r.json");
+    let scalings = scalings(&report);
+    let scenes = [("builtin", 2), ("crowd", 3), ("crowd", 90)];
+    let expected = ["double", "exact"].into_iter().flat_map(|kernel| {
+        let rows = scenes.map(|(scene, spheres)| (scene.to_owned(), spheres, kernel.to_owned()));
+        rows.into_iter()
+            .flat_map(|name| [1, 2].map(|threads| (name.clone(), threads)))
+    });
+    let names = scalings.iter().map(|row| (row.name.clone(), row.threads));
+    assert!(names.eq(expected), "{report}");
+
+    let (_, table) = table
+        .split_once("time a frame against the number of spheres, stage 5\n")
+        .unwrap();
+    let (table, _) = table.split_once("\n\n").unwrap();
+    // Two lines of titles, and a line for both numbers of threads.
+    assert_eq!(table.lines().count(), 2 + scalings.len() / 2, "{table}");
+    for row in &scalings {
+        let is_base = |base: &&Scaling| {
+            let (kernel, threads) = (&row.name.2, row.threads);
+            base.name.0 == "builtin" && base.name.2 == *kernel && base.threads == threads
+        };
+        let base = scalings.iter().find(is_base).unwrap();
+        let is_near = |a: f64, b: f64, part: f64| (a - b).abs() <= part * b;
+        assert!(is_near(row.ratio, row.ms / base.ms, 1e-9), "{report}");
+
+        let (scene, spheres, kernel) = &row.name;
+        let names = [scene, &spheres.to_string(), kernel];
+        let mut lines = table.lines();
+        let line = lines.find(|line| line.split_whitespace().take(3).eq(names));
+        let group = line.unwrap().split('│').nth(row.threads as usize).unwrap();
+        let cells: Vec<&str> = group.split_whitespace().collect();
+        let shown = |cell: &str| cell.parse::<f64>().unwrap();
+        assert!(is_near(shown(cells[0]), row.ms, 0.01), "{table}\n{report}");
+        let ratio = shown(cells.last().unwrap());
+        assert!(is_near(ratio, row.ratio, 0.01), "{table}\n{report}");
+    }
+    // What takes many times as long takes longer on any machine.
+    let largest = scalings.iter().find(|row| row.name.1 == 90).unwrap();
+    assert!(largest.ratio > 1.5, "{report}");
+}
+
+#[test]
+fn without_crowds_the_report_knows_of_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = report(
+        &folder,
+        "--size 2 --frames 0..0 --threads 1 --kernel fast --json r.json",
+    );
+    assert!(!table.contains("spheres"), "{table}");
+    assert_eq!(scalings(&json(&folder, "r.json")).len(), 0);
+}
+
 #[test]
 fn the_plot_is_xml_and_shows_every_kernel_and_every_group() {
     let folder = tempfile::tempdir().unwrap();
@@ -311,6 +405,21 @@ fn wrong_usage_is_2_and_failure_is_1_with_one_line_before_anything_is_measured()
         "file",
     ] {
         failed(&folder, line, 2);
+    }
+    for line in [
+        "--crowd 0",
+        "--crowd 4096",
+        "--crowd x",
+        "--crowd ",
+        "--crowd 20,",
+        "--crowd 20,0",
+        "--crowd 20 --kernel listing --kernel reference",
+    ] {
+        let message = failed(&folder, line, 2);
+        let (first, rest) = message.split_once('\n').unwrap();
+        assert!(first.starts_with("error: "), "{line}: {message}");
+        assert!(first.contains("--crowd"), "{line}: {message}");
+        assert!(!rest.contains("crowd"), "{line}: {message}");
     }
     // Too many frames to be measured before the failure is noticed.
     for (line, says) in [

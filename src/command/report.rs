@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
 use firsthit::image::MAX_SIZE;
-use firsthit::report::{self, NamedScene, Progress, Report, Request};
+use firsthit::report::{self, CROWD_KERNELS, MAX_CROWD, NamedScene, Progress, Report, Request};
 use firsthit::{Kernel, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -37,6 +37,9 @@ pub(crate) struct Arguments {
     /// The number of threads to measure beside one; one a core if not given
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
+    /// The number of spheres of a crowd to be timed too; several with commas between them
+    #[arg(long = "crowd", value_name = "N,...", value_delimiter = ',', value_parser = value_parser!(u16).range(1..=i64::from(MAX_CROWD)))]
+    crowds: Vec<u16>,
     /// A file to write the report to, as JSON
     #[arg(long, value_name = "PATH")]
     json: Option<PathBuf>,
@@ -103,6 +106,14 @@ fn plot(report: &Report, path: &Path) -> Result<(), Failure> {
 }
 
 fn request(arguments: &Arguments) -> Result<Request, Failure> {
+    let kernels = chosen(&arguments.kernels, &KERNELS);
+    let mut crowds = chosen(&arguments.crowds, &[]);
+    crowds.sort_unstable();
+    if !crowds.is_empty() && !CROWD_KERNELS.iter().any(|kernel| kernels.contains(kernel)) {
+        let names = CROWD_KERNELS.map(Kernel::name).join(", ");
+        let message = format!("--crowd needs one of the kernels {names}");
+        return Err(wrong::<Arguments>("firsthit report", message).into());
+    }
     let mut scenes = Vec::new();
     for path in &arguments.scenes {
         let name = path.display().to_string();
@@ -117,10 +128,11 @@ fn request(arguments: &Arguments) -> Result<Request, Failure> {
     Ok(Request {
         scenes,
         stages: chosen(&arguments.stages, &[Stage::Reflection]),
-        kernels: chosen(&arguments.kernels, &KERNELS),
+        kernels,
         size: arguments.size,
         frames: arguments.frames.clone(),
         threads: arguments.threads.map_or(0, NonZeroUsize::get),
+        crowds,
     })
 }
 

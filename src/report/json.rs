@@ -11,6 +11,7 @@ struct Json<'a> {
     version: u32,
     machine: JsonMachine<'a>,
     rows: Vec<JsonRow<'a>>,
+    crowds: Vec<JsonScaling>,
     pipeline: Vec<JsonPipeline<'a>>,
 }
 
@@ -67,6 +68,22 @@ struct Doubt {
     arbitrary: u64,
 }
 
+/// A kernel on a crowd, or on the built-in scene.
+#[derive(Serialize)]
+struct JsonScaling {
+    scene: &'static str,
+    spheres: usize,
+    stage: u8,
+    size: u32,
+    frames: u64,
+    kernel: &'static str,
+    threads: usize,
+    samples: usize,
+    ms: Spread,
+    /// The median time by that of the built-in scene.
+    ratio: f64,
+}
+
 #[derive(Serialize)]
 struct JsonPipeline<'a> {
     context: &'static str,
@@ -92,10 +109,29 @@ impl Report {
                 simd: first.and_then(|row| Some(row.timings.first()?.simd)),
             },
             rows: rows.collect(),
+            crowds: self.json_scalings(),
             pipeline: self.pipelines.iter().map(json_pipeline).collect(),
         };
         // Writing text and numbers to a string cannot fail.
         serde_json::to_string_pretty(&json).map_or_else(|_| String::new(), |text| text + "\n")
+    }
+
+    fn json_scalings(&self) -> Vec<JsonScaling> {
+        let rows = self.scalings.iter().flat_map(|scaling| {
+            scaling.timings.iter().map(|timing| JsonScaling {
+                scene: scaling.scene(),
+                spheres: scaling.spheres,
+                stage: scaling.stage.number(),
+                size: self.size,
+                frames: self.frame_count(),
+                kernel: scaling.kernel.name(),
+                threads: timing.threads,
+                samples: timing.samples,
+                ms: timing.ms,
+                ratio: timing.ratio,
+            })
+        });
+        rows.collect()
     }
 
     fn json_rows<'a>(&self, row: &'a Row) -> Vec<JsonRow<'a>> {

@@ -14,7 +14,7 @@ use crate::{Image, Kernel, Scene, Stage, Tracer};
 const TIME: Duration = Duration::from_millis(1500);
 
 /// The fewest samples of which a median is taken.
-const MIN_SAMPLES: usize = 3;
+pub(super) const MIN_SAMPLES: usize = 3;
 
 /// The most samples: more do not change the median.
 const MAX_SAMPLES: usize = 101;
@@ -141,7 +141,7 @@ pub(super) fn time(
     let (mut ratios, mut retained) = (Vec::new(), Vec::new());
     let count = angles.len() as f64;
     let begin = Instant::now();
-    while ms.len() < MIN_SAMPLES || (begin.elapsed() < TIME && ms.len() < MAX_SAMPLES) {
+    while !is_enough(ms.len(), begin, 1) {
         let round = time_round(angles, |alpha| tracer.trace(scene, stage, alpha, image))?;
         std::hint::black_box(image.samples());
         let fills = time_round(angles, |_| {
@@ -187,10 +187,16 @@ pub(super) fn time(
     }))
 }
 
+/// Whether so many samples suffice, of each of some `rows` that are measured in turn since `begin`.
+pub(super) fn is_enough(samples: usize, begin: Instant, rows: usize) -> bool {
+    let time = TIME.mul_f64(rows as f64);
+    samples >= MAX_SAMPLES || (samples >= MIN_SAMPLES && begin.elapsed() >= time)
+}
+
 /// Seconds for all frames at `angles`. The last of them comes before the first too, and does not
 /// count then: what is made at first use is made, threads are awake, and caches hold what a frame
 /// finds in them when others of its kind came before.
-fn time_round(
+pub(super) fn time_round(
     angles: &[f64],
     mut frame: impl FnMut(f64) -> Result<(), TraceError>,
 ) -> Result<f64, TraceError> {

@@ -21,9 +21,8 @@ impl Report {
         let mut threads = vec![1];
         threads.extend((self.threads > 1).then_some(self.threads));
         for &count in &threads {
-            let title = format!("{count} thread{}", if count == 1 { "" } else { "s" });
-            times.groups.push(Columns::new(
-                &title,
+            times.groups.push(Columns::of_threads(
+                count,
                 &["ms", "min … max", "Mpixel/s", "× fill", "retained"],
             ));
         }
@@ -44,7 +43,8 @@ impl Report {
         }
         let _ = write!(
             text,
-            "\ntime a frame\n{times}\nerrors against reference, over all frames\n{errors}{reason}"
+            "\ntime a frame\n{times}\nerrors against reference, over all frames\n{errors}{reason}{}",
+            self.scaling_table(&threads)
         );
         text
     }
@@ -110,16 +110,42 @@ impl Report {
     fn times(&self, row: &Row, measured: &Measured) -> Vec<String> {
         let mut cells = names(row);
         for timing in &measured.timings {
-            let Spread { median, min, max } = timing.ms;
+            cells.extend(time(timing.ms));
             cells.extend([
-                digits(median),
-                format!("{} … {}", digits(min), digits(max)),
                 digits(self.mpixel_per_s(timing.ms)),
                 digits(timing.fill_ratio.median),
                 digits(timing.retained_fill_ratio.median),
             ]);
         }
         cells
+    }
+
+    /// What spheres cost, as a table that follows the others; nothing without crowds.
+    fn scaling_table(&self, threads: &[usize]) -> String {
+        let Some(stage) = self.scalings.first().map(|scaling| scaling.stage) else {
+            return String::new();
+        };
+        let mut table = Table::new(vec![Columns::new("", &["scene", "spheres", "kernel"])]);
+        for &count in threads {
+            let names = ["ms", "min … max", "× builtin"];
+            table.groups.push(Columns::of_threads(count, &names));
+        }
+        for scaling in &self.scalings {
+            let mut cells = vec![
+                scaling.scene().to_owned(),
+                scaling.spheres.to_string(),
+                scaling.kernel.name().to_owned(),
+            ];
+            for timing in &scaling.timings {
+                cells.extend(time(timing.ms));
+                cells.push(digits(timing.ratio));
+            }
+            table.rows.push(cells);
+        }
+        format!(
+            "\ntime a frame against the number of spheres, stage {}\n{table}",
+            stage.number()
+        )
     }
 
     /// What it costs to display a frame, as a table that follows the others.
@@ -176,6 +202,11 @@ fn names(row: &Row) -> Vec<String> {
         row.stage.number().to_string(),
         row.kernel.name().to_owned(),
     ]
+}
+
+/// The cells of a time: the median, and how far it spreads.
+fn time(Spread { median, min, max }: Spread) -> [String; 2] {
+    [digits(median), format!("{} … {}", digits(min), digits(max))]
 }
 
 /// A row without numbers, and why.
@@ -235,6 +266,12 @@ impl Columns {
             title: title.to_owned(),
             names: names.iter().map(|&name| name.to_owned()).collect(),
         }
+    }
+
+    /// Columns for what so many threads do.
+    fn of_threads(threads: usize, names: &[&str]) -> Columns {
+        let s = if threads == 1 { "" } else { "s" };
+        Columns::new(&format!("{threads} thread{s}"), names)
     }
 }
 
