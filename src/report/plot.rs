@@ -15,7 +15,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Group, Measured, Report, Row, Spread};
 use crate::Kernel;
-use axis::{ErrorAxis, TimeAxis};
+use axis::{ErrorAxis, LogAxis};
 
 /// A plot that cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -154,7 +154,7 @@ fn mark<'a>(kernel: Kernel, measured: impl Iterator<Item = &'a Measured>) -> Opt
 }
 
 /// Axes that all panels share, so that they can be compared.
-fn axes(panels: &[Panel]) -> (TimeAxis, ErrorAxis) {
+fn axes(panels: &[Panel]) -> (LogAxis, ErrorAxis) {
     let marks = || panels.iter().flat_map(|panel| &panel.marks);
     let times = marks().flat_map(|mark| [mark.ms.min, mark.ms.max]);
     let errors = marks().flat_map(|mark| {
@@ -162,7 +162,7 @@ fn axes(panels: &[Panel]) -> (TimeAxis, ErrorAxis) {
         each.chain([mark.mean, mark.largest])
     });
     (
-        TimeAxis::over(times.chain(panels.iter().map(|panel| panel.fill_ms))),
+        LogAxis::over(times.chain(panels.iter().map(|panel| panel.fill_ms))),
         ErrorAxis::over(errors),
     )
 }
@@ -178,7 +178,7 @@ fn draw_panel(
     panel: &Panel,
     whole: &Area<'_>,
     place: &Area<'_>,
-    (times, errors): (TimeAxis, ErrorAxis),
+    (times, errors): (LogAxis, ErrorAxis),
 ) -> Drawn {
     let mut chart = ChartBuilder::on(place)
         .caption(&panel.title, font(16, HPos::Center))

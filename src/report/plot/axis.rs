@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-/// Milliseconds, labelled at 1, 2 and 5 of every decade, or at its 1 only.
+/// Positive numbers, labelled at 1, 2 and 5 of every decade, or at its 1 only.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TimeAxis {
+pub(super) struct LogAxis {
     /// The decimal logarithms of the ends.
     ends: [f64; 2],
 }
@@ -21,14 +21,14 @@ pub(super) struct ErrorAxis {
 /// What an error axis has above its last label, in decades.
 const TOP: f64 = 0.3;
 
-impl TimeAxis {
-    /// An axis that has room for all `times`.
-    pub(super) fn over(times: impl Iterator<Item = f64>) -> TimeAxis {
-        let [low, high] = logarithms(times).unwrap_or([0.0, 0.0]);
+impl LogAxis {
+    /// An axis that has room for all `values`.
+    pub(super) fn over(values: impl Iterator<Item = f64>) -> LogAxis {
+        let [low, high] = logarithms(values).unwrap_or([0.0, 0.0]);
         // A little more on both sides, and never less than half a decade in all.
         let margin = ((high - low) * 0.06).max(0.25);
         let ends = [low - margin, high + margin];
-        TimeAxis { ends }
+        LogAxis { ends }
     }
 }
 
@@ -87,7 +87,7 @@ fn pixel(place: f64, [low, high]: [f64; 2], limit: (i32, i32)) -> i32 {
     (f64::from(limit.0) + part * f64::from(limit.1 - limit.0)).round() as i32
 }
 
-impl Ranged for TimeAxis {
+impl Ranged for LogAxis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
 
@@ -117,7 +117,7 @@ impl Ranged for TimeAxis {
     }
 }
 
-impl ValueFormatter<f64> for TimeAxis {
+impl ValueFormatter<f64> for LogAxis {
     fn format_ext(&self, value: &f64) -> String {
         // 0.1 is not 0.1 exactly, nor 1e-1 what a power gives.
         let decimals = (-libm::log10(*value) - 1e-9).ceil().max(0.0) as usize;
