@@ -8,28 +8,25 @@
 //! (Okabe and Ito).
 
 mod axis;
+mod drawing;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::HPos;
 
 use super::{Group, Measured, Report, Row, Spread};
 use crate::Kernel;
 use axis::{ErrorAxis, LogAxis};
+use drawing::{Area, Drawn, INK, color, font, shape};
 
 /// A plot that cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("the plot cannot be drawn: {0}")]
 pub struct PlotError(String);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
 const PANEL: (u32, u32) = (680, 420);
 const TITLE: u32 = 58;
 const LEGEND: u32 = 64;
 
-const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 /// A kernel in a panel.
@@ -167,13 +164,6 @@ fn axes(panels: &[Panel]) -> (LogAxis, ErrorAxis) {
     )
 }
 
-fn font(size: u32, horizontal: HPos) -> TextStyle<'static> {
-    ("sans-serif", size)
-        .into_font()
-        .color(&INK)
-        .pos(Pos::new(horizontal, VPos::Top))
-}
-
 fn draw_panel(
     panel: &Panel,
     whole: &Area<'_>,
@@ -248,37 +238,6 @@ fn dashes(area: &Area<'_>, x: i32, (top, bottom): (i32, i32)) -> Drawn {
         area.draw(&PathElement::new(dash, INK.stroke_width(2)))?;
     }
     Ok(())
-}
-
-/// The colours of Okabe and Ito that are dark enough on white.
-fn color(kernel: Kernel) -> RGBColor {
-    match kernel {
-        Kernel::Exact => RGBColor(0x00, 0x72, 0xb2),
-        Kernel::Fast => RGBColor(0xd5, 0x5e, 0x00),
-        Kernel::Double => RGBColor(0x00, 0x9e, 0x73),
-        Kernel::Listing => RGBColor(0xcc, 0x79, 0xa7),
-        Kernel::Reference => RGBColor(0x00, 0x00, 0x00),
-    }
-}
-
-/// The outline of a kernel's shape around (`x`, `y`), `parts` halves of its size. Of different
-/// sizes, they can be told apart where they coincide.
-fn shape(
-    area: &Area<'_>,
-    kernel: Kernel,
-    (x, y): (i32, i32),
-    parts: i32,
-    line: ShapeStyle,
-) -> Drawn {
-    let corners = match kernel {
-        Kernel::Exact => return area.draw(&Circle::new((x, y), 4 * parts, line)),
-        Kernel::Fast => [(0, -4), (4, 3), (-4, 3), (0, -4), (4, 3)],
-        Kernel::Double => [(-2, -2), (2, -2), (2, 2), (-2, 2), (-2, -2)],
-        Kernel::Listing => [(-3, -3), (3, 3), (0, 0), (3, -3), (-3, 3)],
-        Kernel::Reference => [(0, -5), (5, 0), (0, 5), (-5, 0), (0, -5)],
-    };
-    let corners = corners.map(|(dx, dy)| (x + dx * parts, y + dy * parts));
-    area.draw(&PathElement::new(corners, line))
 }
 
 /// Shapes and what they stand for, in the middle below the panels.
