@@ -260,6 +260,78 @@ fn each_crowd_has_its_time_by_that_of_the_built_in_scene() {
     assert!(largest.ratio > 1.5, "{report}");
 }
 
+/// Where the marks of a kernel stand in the last of two panels: the middle of each outline in the
+/// kernel's colour that is drawn in full size.
+fn marks(plot: &roxmltree::Document<'_>, color: &str) -> Vec<[f64; 2]> {
+    let in_color = plot
+        .descendants()
+        .filter(|node| node.attribute("stroke") == Some(color));
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let marks = in_color.filter_map(|node| {
+        if node.attribute("r") == Some("8") {
+            return Some(["cx", "cy"].map(|name| number(node.attribute(name).unwrap())));
+        }
+        let points = node.attribute("points")?.split_whitespace();
+        let corners: Vec<[f64; 2]> = points
+            .map(|point| point.split_once(',').unwrap())
+            .map(|(x, y)| [number(x), number(y)])
+            .collect();
+        let &[low, _, high, _, last] = &corners[..] else {
+            return None;
+        };
+        (low == last).then(|| [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0))
+    });
+    let (left, legend) = (680.0, 478.0);
+    marks.filter(|&[x, y]| x > left && y < legend).collect()
+}
+
+#[test]
+fn each_crowd_is_in_the_plot() {
+    let folder = tempfile::tempdir().unwrap();
+    report(&folder, &format!("{CROWDS} --json r.json --plot p.svg"));
+    let text = read(&folder, "p.svg");
+    let plot = roxmltree::Document::parse(&text).unwrap();
+    for label in [
+        "Time against the number of spheres",
+        "built-in scene",
+        "spheres",
+    ] {
+        let is_label = |node: roxmltree::Node<'_, '_>| node.text().map(str::trim) == Some(label);
+        assert!(plot.descendants().any(is_label), "{label}");
+    }
+    let scalings = scalings(&json(&folder, "r.json"));
+    let mut places = Vec::new();
+    for (kernel, color) in [("exact", "#0072B2"), ("double", "#009E73")] {
+        let rows = scalings
+            .iter()
+            .filter(|row| row.name.2 == kernel && row.threads == 1);
+        let marks = marks(&plot, color);
+        assert_eq!(marks.len(), rows.clone().count(), "{kernel}");
+        places.extend(rows.zip(marks).map(|(row, mark)| {
+            let values = [row.name.1 as f64, row.ms].map(f64::log10);
+            (values, mark)
+        }));
+    }
+    // Both scales are logarithmic: two places of each tell where the others are.
+    for (axis, sign) in [(0, 1.0), (1, -1.0)] {
+        let places = places
+            .iter()
+            .map(|(values, mark)| (values[axis], mark[axis]));
+        let order = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0);
+        let low = places.clone().min_by(order).unwrap();
+        let high = places.clone().max_by(order).unwrap();
+        let decade = (high.1 - low.1) / (high.0 - low.0);
+        assert!(sign * decade > 50.0, "{decade} pixels a decade");
+        for (value, pixel) in places {
+            let expected = low.1 + decade * (value - low.0);
+            assert!(
+                (pixel - expected).abs() < 2.0,
+                "{pixel} instead of {expected}"
+            );
+        }
+    }
+}
+
 #[test]
 fn without_crowds_the_report_knows_of_none() {
     let folder = tempfile::tempdir().unwrap();

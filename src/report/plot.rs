@@ -5,10 +5,11 @@
 //! there to the largest: the scenes differ in brightness by many orders of magnitude, and steps do
 //! not know of it. Both scales are logarithmic, and 0 has a place of its own. Kernels differ in
 //! shape, so that the plot reads in grey, and in colours that the colour-blind can tell apart
-//! (Okabe and Ito).
+//! (Okabe and Ito). Where crowds were measured, a last panel has their times.
 
 mod axis;
 mod drawing;
+mod scaling;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -16,7 +17,8 @@ use plotters::style::text_anchor::HPos;
 use super::{Group, Measured, Report, Row, Spread};
 use crate::Kernel;
 use axis::{ErrorAxis, LogAxis};
-use drawing::{Area, Drawn, INK, color, font, shape};
+use drawing::{Area, Drawn, INK, TIME, chart, color, font, shape};
+use scaling::ScalingPanel;
 
 /// A plot that cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -26,8 +28,6 @@ pub struct PlotError(String);
 const PANEL: (u32, u32) = (680, 420);
 const TITLE: u32 = 58;
 const LEGEND: u32 = 64;
-
-const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 /// A kernel in a panel.
 struct Mark {
@@ -62,7 +62,8 @@ impl Report {
     }
 
     fn draw(&self, panels: &[Panel], text: &mut String) -> Drawn {
-        let count = panels.len().max(1);
+        let scaling = ScalingPanel::new(&self.scalings);
+        let count = (panels.len() + usize::from(scaling.is_some())).max(1);
         let (width, height) = (PANEL.0 * count as u32, TITLE + PANEL.1 + LEGEND);
         let area = SVGBackend::with_string(text, (width, height)).into_drawing_area();
         area.fill(&WHITE)?;
@@ -83,10 +84,15 @@ impl Report {
         area.draw(&Text::new(on, (middle, 36), font(13, HPos::Center)))?;
         let axes = axes(panels);
         let places = area.split_vertically(TITLE).1.split_vertically(PANEL.1).0;
-        for (panel, place) in panels.iter().zip(places.split_evenly((1, count))) {
-            draw_panel(panel, &area, &place, axes)?;
+        let places = places.split_evenly((1, count));
+        for (panel, place) in panels.iter().zip(&places) {
+            draw_panel(panel, &area, place, axes)?;
         }
-        draw_legend(panels, &area, (middle, (TITLE + PANEL.1) as i32))?;
+        if let (Some(scaling), Some(place)) = (&scaling, places.last()) {
+            scaling.draw(&area, place)?;
+        }
+        let top = (TITLE + PANEL.1) as i32;
+        draw_legend(panels, scaling.is_some(), &area, (middle, top))?;
         area.present()
     }
 
@@ -170,23 +176,12 @@ fn draw_panel(
     place: &Area<'_>,
     (times, errors): (LogAxis, ErrorAxis),
 ) -> Drawn {
-    let mut chart = ChartBuilder::on(place)
-        .caption(&panel.title, font(16, HPos::Center))
-        .margin(8)
-        .margin_right(20)
-        .x_label_area_size(46)
-        .y_label_area_size(68)
-        .build_cartesian_2d(times, errors)?;
-    chart
-        .configure_mesh()
-        .bold_line_style(GRID)
-        .light_line_style(TRANSPARENT)
-        .axis_style(INK)
-        .label_style(("sans-serif", 13).into_font().color(&INK))
-        .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
-        .x_desc("time a frame, ms")
-        .y_desc("error of a sample, f32 steps")
-        .draw()?;
+    let chart = chart(
+        place,
+        &panel.title,
+        (times, TIME),
+        (errors, "error of a sample, f32 steps"),
+    )?;
     let pixel = |time: f64, error: f64| chart.backend_coord(&(time, error));
 
     let high = errors.upper_end();
@@ -241,7 +236,12 @@ fn dashes(area: &Area<'_>, x: i32, (top, bottom): (i32, i32)) -> Drawn {
 }
 
 /// Shapes and what they stand for, in the middle below the panels.
-fn draw_legend(panels: &[Panel], area: &Area<'_>, (middle, top): (i32, i32)) -> Drawn {
+fn draw_legend(
+    panels: &[Panel],
+    with_scaling: bool,
+    area: &Area<'_>,
+    (middle, top): (i32, i32),
+) -> Drawn {
     const ENTRY: i32 = 108;
     const LAST: i32 = 150;
     let is_there = |kernel: &Kernel| {
@@ -270,8 +270,12 @@ fn draw_legend(panels: &[Panel], area: &Area<'_>, (middle, top): (i32, i32)) -> 
         true => "; small: a single scene",
         false => "",
     };
+    let last = match with_scaling {
+        true => "; last panel, up and down: least and most time",
+        false => "",
+    };
     let text = format!(
-        "mark: median time and mean error; across: least and most time; up: to the largest error{small}"
+        "mark: median time and mean error; across: least and most time; up: to the largest error{small}{last}"
     );
     area.draw(&Text::new(text, (middle, top + 36), font(13, HPos::Center)))
 }

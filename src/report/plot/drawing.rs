@@ -1,6 +1,7 @@
-//! What the panels are drawn with: text, and a colour and a shape for each kernel.
+//! What the panels are drawn with: a grid, text, and a colour and a shape for each kernel.
 
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -8,15 +9,52 @@ use crate::Kernel;
 
 /// An image, or a part of one.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+/// A grid with its axes.
+type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
 
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 pub(super) fn font(size: u32, horizontal: HPos) -> TextStyle<'static> {
     ("sans-serif", size)
         .into_font()
         .color(&INK)
         .pos(Pos::new(horizontal, VPos::Top))
+}
+
+/// What the axes of times measure.
+pub(super) const TIME: &str = "time a frame, ms";
+
+/// A grid in `place` over the axes `x` and `y`, with what they measure.
+pub(super) fn chart<'a, X, Y>(
+    place: &Area<'a>,
+    title: &str,
+    (x, x_name): (X, &str),
+    (y, y_name): (Y, &str),
+) -> Drawn<Chart<'a, X, Y>>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut chart = ChartBuilder::on(place)
+        .caption(title, font(16, HPos::Center))
+        .margin(8)
+        .margin_right(20)
+        .x_label_area_size(46)
+        .y_label_area_size(68)
+        .build_cartesian_2d(x, y)?;
+    chart
+        .configure_mesh()
+        .bold_line_style(GRID)
+        .light_line_style(TRANSPARENT)
+        .axis_style(INK)
+        .label_style(("sans-serif", 13).into_font().color(&INK))
+        .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
+        .x_desc(x_name)
+        .y_desc(y_name)
+        .draw()?;
+    Ok(chart)
 }
 
 /// The colours of Okabe and Ito that are dark enough on white.
