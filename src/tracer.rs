@@ -4,14 +4,15 @@
 //! [`Kernel`] is a choice of that number, and of what is done where it is in doubt. To be read in
 //! this order:
 //!
-//! - `frame`, `view`: the scene turned by α and measured in pixels, and its mirror image;
+//! - `frame`, `view`: the scene turned by α and measured in thirds of a pixel, and its
+//!   mirror image;
 //! - `line`, `sphere`, `tetrahedron`, `surface`: a ray and what it meets; `shading`: equation 4-1;
-//! - `extent`, `surface_casters`: which solids a pixel need not be asked about;
+//! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
 //! - `pixel`: what a pixel shows, from these: the definition of the picture;
-//! - `ladder`: the same asked of f64 with bounds, then of double-doubles, then of arbitrary
-//!   precision;
-//! - `scanline`: the same again for whole rows at once, which makes nearly every pixel;
-//! - `listing`: the document's own way, slips included, by itself;
+//! - `ladder`: a pixel in f64 with bounds, where that is in doubt in double-doubles, then in
+//!   arbitrary precision;
+//! - `scanline`: whole rows of pixels at once, which makes nearly all of them;
+//! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
 //! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words.
 
@@ -62,9 +63,8 @@ use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
 pub use simd::Simd;
 use target::Target;
 
-/// Rows are handed to threads in bands of so many: those that are crossed at once, so that no
-/// two threads cross the same. They are few enough that the last band of one is not long waited for
-/// by the others, and so many that claiming them costs nothing beside that.
+/// Rows in a band, which one thread traces: the rows whose crossings are computed together. A band
+/// is small enough to balance the threads, and large enough that claiming one costs nothing.
 const BAND: usize = ROWS;
 
 /// Traces pictures: made once, used for any number of frames.
@@ -79,7 +79,7 @@ pub struct Tracer {
     /// Behind a mutex that nobody locks, so that a tracer can be shared to explain pixels.
     arena: Mutex<Arena>,
     /// What is known of the rows of the frame that was traced last to be traced over.
-    memory: Vec<RowHistory>,
+    history: Vec<RowHistory>,
     /// The number of that frame; 0 before there is one.
     frame: u64,
 }
@@ -98,7 +98,7 @@ impl Tracer {
             local: local.take(pool.threads()).collect(),
             pool,
             simd: Simd::best(),
-            memory: Vec::new(),
+            history: Vec::new(),
             frame: 0,
             progress: Progress::default(),
             in_doubt: InDoubt::default(),
@@ -179,13 +179,13 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
     ) -> Result<Range<u32>, TraceError> {
-        self.memory
+        self.history
             .iter_mut()
             .for_each(|row| row.is_written = false);
         self.trace_frame(scene, stage, alpha, image, None, Update::Changes)?;
         let is_written = |row: &RowHistory| row.is_written;
-        let first = self.memory.iter().position(is_written);
-        let last = self.memory.iter().rposition(is_written);
+        let first = self.history.iter().position(is_written);
+        let last = self.history.iter().rposition(is_written);
         Ok(first
             .zip(last)
             .map_or(0..0, |(first, last)| first as u32..last as u32 + 1))
@@ -293,28 +293,28 @@ impl Tracer {
     ) {
         self.progress.begin();
         let size = image.size();
-        let mut memory = std::mem::take(&mut self.memory);
+        let mut history = std::mem::take(&mut self.history);
         let (remembered, samples) = match update {
             Update::Whole => (None, image.samples_mut()),
             Update::Changes => {
                 let known = self.frame != 0 && image.frame() == self.frame;
                 if !known {
-                    memory.iter_mut().for_each(RowHistory::clear);
+                    history.iter_mut().for_each(RowHistory::clear);
                 }
-                memory.resize_with(size as usize, RowHistory::default);
+                history.resize_with(size as usize, RowHistory::default);
                 self.frame = next_frame();
                 let samples = image.samples_of_frame(self.frame);
-                (Some(memory.as_mut_slice()), samples)
+                (Some(history.as_mut_slice()), samples)
             }
         };
         let target = Target {
             size,
             samples,
             decisions,
-            memory: remembered,
+            history: remembered,
         };
         self.in_doubt = trace(self, target);
-        self.memory = memory;
+        self.history = history;
     }
 
     fn trace_rows(
@@ -329,7 +329,7 @@ impl Tracer {
         for local in &mut self.local {
             rows.begin(&mut inner(local).scratch);
         }
-        let streamed = target.memory.is_none() && size_of_val(target.samples) > stream::PLAIN;
+        let streamed = target.history.is_none() && size_of_val(target.samples) > stream::PLAIN;
         let progress = self.progress();
         self.each_band(target, |first, band, local| {
             let Local { scratch, row, .. } = local;
@@ -338,10 +338,10 @@ impl Tracer {
                 let Target {
                     samples,
                     decisions,
-                    memory,
+                    history,
                     ..
                 } = band;
-                return rows.trace(first..end, samples, decisions, memory, scratch, &progress);
+                return rows.trace(first..end, samples, decisions, history, scratch, &progress);
             }
             let mut in_doubt = InDoubt::default();
             for (number, target) in (first..).zip(band.split(1)) {
@@ -361,8 +361,8 @@ impl Tracer {
         self.each_band(target, |first, band, _| {
             let mut in_doubt = InDoubt::default();
             for (number, row) in (first..).zip(band.split(1)) {
-                if let Some(memory) = row.memory.and_then(<[RowHistory]>::first_mut) {
-                    memory.is_written = true;
+                if let Some(history) = row.history.and_then(<[RowHistory]>::first_mut) {
+                    history.is_written = true;
                 }
                 let mut decisions = row.decisions.into_iter().flatten();
                 for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {

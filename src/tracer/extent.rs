@@ -1,4 +1,4 @@
-//! Where a solid can be seen at all: most pixels ask about most solids in vain.
+//! Where a solid can be seen at all: most pixels need not be tested against most solids.
 
 use std::ops::RangeInclusive;
 

@@ -125,7 +125,7 @@ impl<'f, R: Real> Picture<'f, R> {
                     ..
                 }),
             ) => self.color_of_solid(&mirror.view, seen, normal)? * mirror.reflectance,
-            // Without a surface nothing else is decided.
+            // The background: nothing else is decided.
             _ => Vector::exact(self.scene.background()),
         };
         Ok([

@@ -1,12 +1,12 @@
 //! The scan-line tracer: a frame, row by row, from the left to the right.
 //!
 //! Most pixels show what their left neighbour shows. So a pixel is not asked what it shows: it is
-//! found where *edges* cross its row, and between two crossings, in a *span*, all pixels show the
-//! same.
+//! found where *edges* cross its row. Between two crossings, in a *gap*, all pixels meet the same
+//! solids, shadows and mirror images; neighbouring gaps that show the same are one *span*.
 //!
 //! ```text
-//!     frame → edge table → crossings of 8 rows → active edges → spans → what is visible → samples
-//!     prepare/  edges/table    edges/region        active       active     visibility/   shade/, write/
+//!     frame → edge table → crossings of 8 rows → active edges → what gaps show → spans → samples
+//!     prepare/  edges/table    edges/region        active       visibility/     active   shade/, write/
 //!
 //!     one row:
 //!               edge    edge         edge         edge      edge            edge
@@ -21,9 +21,10 @@
 //!   the surface (`floor`); all of it as plain data (`prepared`) with its edges and paints.
 //! - `edges/` holds the edges on the screen at which a row may change what it shows. Eye rays are
 //!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
-//!   or of a mirror image is a straight line or an ellipse, and where it crosses a row is a root,
-//!   known within a bound. So the *possible* columns of a region and its *certain* ones may differ:
-//!   what lies between them is asked pixel by pixel.
+//!   on a plane or of a mirror image is a straight line or an ellipse, and where it crosses a row
+//!   is a root, known within a bound. So the *possible* columns of a region and its *certain* ones
+//!   may differ: in the columns between them first the region is evaluated, and where that does
+//!   not tell, the whole pixel. Shadows on spheres are no edges: `shade/` finds them.
 //! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the
 //!   next row, where mostly nothing but places has changed.
 //! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is
@@ -31,7 +32,8 @@
 //!   and what of it is seen (`resolve`).
 //! - `shade/` computes the pixels of spheres, many at a time: within bounds for the kernels that
 //!   are right (`certified`), or without (`unchecked`). Columns turned away from the light are
-//!   found as a span, too (`spans`).
+//!   found as runs, too, and those that may have a highlight
+//!   (`spans`).
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
@@ -39,14 +41,24 @@
 //! (`ladder.rs`), by the formulas that everything here is derived from: `pixel.rs` is the
 //! definition, this is how it is computed fast.
 //!
-//! A new kind of solid, such as a cylinder, would need: a file beside `sphere.rs` for the line that
-//! meets it, an outline and a depth (`prepare/outline`, `prepare/depth`), its colours
-//! (`prepare/bodies`, and `shade/` where they vary), and its shadow on planes and on spheres
-//! (`prepare/shadows`). Everything else knows regions and depths only.
+//! A new kind of solid, such as a cylinder, would need
+//!
+//! - in `scene`: its type and its refusals (`file`), a ball around it (`hull`), when it lies inside
+//!   of others (`hidden`), what is exactly known of it (`exact`);
+//! - in `tracer`: the line that meets it, in a file beside `tracer/sphere.rs`; `frame`, `view`,
+//!   `extent`, `pixel`, `palette` and `explain` name every kind of solid;
+//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), its colours
+//!   (`prepare/bodies`, `visibility/resolve`, and `shade/` where they vary), its shadow on planes
+//!   and on spheres (`prepare/shadows`, `shade/caster`), and planes that keep it apart from others
+//!   (`visibility/separation`).
+//!
+//! A [`Region`](edges::region::Region) is half-planes and at most one ellipse, and a solid has one:
+//! the outline of a cylinder, which is a union of two ellipses and what lies between them, would
+//! need several.
 //!
 //! What not to try again: closures given to `map` inside of vector code, which are compiled without
 //! the vector instructions around them; 16 rows at once; shading the runs of a sphere together at
-//! the end of some rows. What each step of the way brought is told by the commits.
+//! the end of some rows.
 
 mod active;
 #[cfg(test)]
@@ -89,12 +101,12 @@ pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
 use write::row::Row;
 
-/// Where a pixel may show fewer solids, it does not pay to look which of them are hidden.
+/// The mean number of solids behind a pixel from which on it pays to look for hidden ones.
 const CULL_FROM: u64 = 4;
 
 /// A frame, ready to be traced row by row.
 pub(super) struct RowTracer<'f, P> {
-    /// Asked for what is in doubt.
+    /// The pixels one by one, for those that rows leave in doubt.
     pixels: &'f P,
     frame: Prepared<'f>,
     level: Level,
@@ -140,7 +152,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         }
     }
 
-    /// What tracing rows of this frame needs.
+    /// Prepares `scratch` for rows of this frame.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
         scratch.active.begin(&self.frame.edges, self.frame.grid);
         scratch.depth_tests.clear();
@@ -148,8 +160,8 @@ impl<'f, P: Lines> RowTracer<'f, P> {
     }
 
     /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
-    /// How many pixels double-doubles and arbitrary precision had to settle. `scratch` is
-    /// prepared for the frame. With a `memory` of the rows, which holds for `samples`, only
+    /// Returns how many pixels double-doubles and arbitrary precision had to settle. `scratch` is
+    /// prepared for the frame. With a `history` of the rows, which holds for `samples`, only
     /// what differs is written.
     pub(super) fn trace(
         &self,
@@ -191,7 +203,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         row.finish_all()
     }
 
-    /// Code 2-1, which knows two kinds of column.
+    /// Code 2-1, in which the left half of a row shows one quadrant and the right half another.
     fn trace_quadrants<'r>(&'r self, row: &mut Row<'r>, quadrants: &[PaintNumber; 4]) {
         let size = self.frame.grid.size;
         let middle = (size / 2 + 1).min(size);
@@ -221,7 +233,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);
             match visible {
-                // A part that other rows have.
+                // The span has no columns in this row.
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(row, (from, to), shows, shade),
                 Visible::First(_) => {

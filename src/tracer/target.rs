@@ -9,7 +9,7 @@ pub(super) struct Target<'t> {
     pub(super) size: u32,
     pub(super) samples: &'t mut [f32],
     pub(super) decisions: Option<&'t mut [Decision]>,
-    pub(super) memory: Option<&'t mut [RowHistory]>,
+    pub(super) history: Option<&'t mut [RowHistory]>,
 }
 
 impl<'t> Target<'t> {
@@ -18,13 +18,13 @@ impl<'t> Target<'t> {
         let size = self.size;
         let width = size as usize;
         let mut decisions = self.decisions.map(|all| all.chunks_mut(width * rows));
-        let mut memory = self.memory.map(|all| all.chunks_mut(rows));
+        let mut history = self.history.map(|all| all.chunks_mut(rows));
         let samples = self.samples.chunks_mut(3 * width * rows);
         samples.map(move |samples| Target {
             size,
             samples,
             decisions: decisions.as_mut().and_then(Iterator::next),
-            memory: memory.as_mut().and_then(Iterator::next),
+            history: history.as_mut().and_then(Iterator::next),
         })
     }
 }

@@ -132,7 +132,7 @@ pub(super) struct View<'f, R> {
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
     pub(super) from_eye: Sight<R>,
-    pub(super) from_light: Sight<R>,
+    pub(super) to_light: Sight<R>,
 }
 
 /// Which solids take part.
@@ -184,11 +184,11 @@ impl<'f, R: Real> View<'f, R> {
             .map(|(index, &crossing)| {
                 let solid = frame.tetrahedron(scene, index, mirror);
                 let from_eye = solid.sight(&looking(), crossing);
-                let from_light = solid.sight_of_light(&to_light);
+                let along_light = solid.sight_of_light(&to_light);
                 TetrahedronInView {
                     solid,
                     from_eye,
-                    from_light,
+                    to_light: along_light,
                 }
             });
         View {
@@ -332,7 +332,7 @@ impl<'f, R: Real> View<'f, R> {
             Some(sphere) => sphere.is_ahead(ray),
             None => {
                 let t = &self.tetrahedra[solid - self.spheres.len()];
-                t.solid.is_ahead(&t.from_light, ray)
+                t.solid.is_ahead(&t.to_light, ray)
             }
         }
     }

@@ -26,7 +26,8 @@ enum Crosses {
     Possibly,
 }
 
-/// One of the four crossings of an edge with a row: 4 · edge + kind.
+/// One of the four crossings of an edge with a row, 4 · edge + kind: its region begins possibly (0),
+/// begins certainly (1), ends certainly (2), ends possibly (3).
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing(u32);
 
@@ -264,7 +265,8 @@ impl ActiveEdges {
         self.wanting = wanting.to_bitmask();
     }
 
-    /// Finds out what is visible where the row has columns of which that is not known.
+    /// Finds out what is visible in the gaps that have columns in this row, where it is not known.
+    /// All regions end with the row: then the coverage is empty again.
     fn look(
         &mut self,
         row: usize,
@@ -316,7 +318,7 @@ impl ActiveEdges {
         self.at.clear();
         self.at.extend(places);
         self.at.push([self.size; ROWS]);
-        // Columns may have come between other crossings.
+        // A gap that nobody has looked into, empty so far, may have columns now.
         self.has_spans &= self.open.is_empty();
     }
 

@@ -55,8 +55,8 @@ impl Spans {
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
 
-    /// Puts the runs without columns where the next row's run begins that has some, if there are
-    /// any.
+    /// Puts a run without columns where that of the nearest row begins that has some, below or else
+    /// above: there it is in order among the other crossings of its row, mostly.
     pub(crate) fn put_empty_beside(&mut self) {
         let mut empty = !self.filled & ALL;
         if empty == ALL {

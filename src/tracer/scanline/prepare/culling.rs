@@ -12,8 +12,8 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
 
-/// How many tiles lie side by side, and how many on top of each other where tiles are no lower
-/// than the rows that are crossed at once.
+/// There are so many tiles side by side, and so many on top of each other, or fewer: a tile is a
+/// multiple of [`ROWS`] high.
 const ACROSS: u32 = 16;
 const UP: u32 = 64;
 
@@ -27,7 +27,8 @@ pub(crate) struct Tiles<'f> {
     /// Columns and rows of a tile.
     width: u32,
     height: u32,
-    /// From the left, rows of tiles from the bottom.
+    /// For each tile, from the left in rows of tiles from the bottom: what enters a solid behind this
+    /// depth is hidden.
     seen_before: &'f mut [f64],
     across: u32,
 }
@@ -68,7 +69,7 @@ impl<'f> Tiles<'f> {
         from / self.height..to.div_ceil(self.height).min(self.up())
     }
 
-    /// The rows and columns of a tile.
+    /// The columns and rows of a tile.
     fn of(&self, across: u32, up: u32) -> (Columns, Rows) {
         let ends = |number: u32, length: u32| {
             let from = number * length;
@@ -116,7 +117,7 @@ impl<'f> Tiles<'f> {
         run
     }
 
-    /// Which tiles of a row a run of columns reaches, and which of them it covers.
+    /// Which tiles of a row of tiles have columns of a run.
     fn reached(&self, (from, to): Columns) -> std::ops::Range<u32> {
         if from < to {
             from / self.width..to.div_ceil(self.width)
@@ -125,6 +126,7 @@ impl<'f> Tiles<'f> {
         }
     }
 
+    /// Which tiles of a row of tiles have no others.
     fn covered(&self, (from, to): Columns) -> std::ops::Range<u32> {
         let end = if to == self.grid.size {
             self.across

@@ -120,7 +120,7 @@ impl<'f> Outlines<'f> {
         self.area / (u64::from(grid.size) * u64::from(grid.size))
     }
 
-    /// Leaves out what is hidden in all tiles. What it leaves hides what is behind it there.
+    /// Leaves out the solids that others hide in all tiles.
     pub(crate) fn cull(&mut self, tiles: &mut Tiles<'_>) {
         for solid in &self.all {
             // What the surface mirrors begins there, and that of a solid which goes through it may

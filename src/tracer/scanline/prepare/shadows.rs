@@ -135,9 +135,9 @@ pub(crate) fn shadows_on<'f>(
                 let t = &view.tetrahedra[caster - view.spheres.len()];
                 let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
                 let planes = if is_ahead {
-                    collect(arena, t.solid.met(&t.from_light).map(plane))
+                    collect(arena, t.solid.met(&t.to_light).map(plane))
                 } else {
-                    collect(arena, t.solid.ahead(&t.from_light).map(plane))
+                    collect(arena, t.solid.ahead(&t.to_light).map(plane))
                 };
                 Region::new(planes, None, grid)
             }
@@ -172,7 +172,7 @@ pub(crate) fn casters_on<'f>(
             }
             None => {
                 let t = &view.tetrahedra[caster - view.spheres.len()];
-                let ahead = t.solid.ahead(&t.from_light);
+                let ahead = t.solid.ahead(&t.to_light);
                 let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }

@@ -1,7 +1,7 @@
 //! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! It follows the crossings of a row from the left to the right. So what it holds is as long as
-//! the list of what covers one column, and not as the list of all edges.
+//! It follows the crossings of a row from the left to the right, so that its lists hold what covers
+//! one column, and nobody goes through all edges to find that.
 
 use crate::tracer::scanline::edges::table::{Edge, EdgeTable, Receiver};
 

@@ -112,7 +112,7 @@ impl DepthTests {
         self.solids.clear();
     }
 
-    /// Whether there are so many tests that the oldest are hardly needed any more.
+    /// Whether there are so many tests that all are to be forgotten: most are not needed any more.
     pub(crate) fn is_full(&self) -> bool {
         self.tests.len() > MANY
     }

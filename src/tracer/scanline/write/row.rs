@@ -62,7 +62,7 @@ impl<'r> Row<'r> {
         if let Some(decisions) = &mut self.decisions {
             decisions[pixels].fill(paint.decision);
         }
-        // It is lent to the memory, which calls back.
+        // It is lent to the history, which calls back.
         match self.history.take() {
             Some(history) => {
                 let place = (self.number - self.first) as usize;
