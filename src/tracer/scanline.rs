@@ -30,10 +30,9 @@
 //! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is
 //!   in front by a plane that keeps solids apart (`separation`) or by a test of depth (`depth`),
 //!   and what of it is seen (`resolve`).
-//! - `shade/` computes the pixels of spheres, many at a time: within bounds for the kernels that
-//!   are right (`certified`), or without (`unchecked`). Columns turned away from the light are
-//!   found as runs, too, and those that may have a highlight
-//!   (`spans`).
+//! - `shade/` computes the pixels of spheres, many at a time (`run`), by one formula (`equation`):
+//!   within bounds for the kernels that are right, or without (`policy`). Columns turned away from
+//!   the light are found as runs, too, and those that may have a highlight (`spans`).
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
@@ -91,7 +90,7 @@ pub(super) use grid::ROWS;
 pub(super) use precision::Precision;
 use prepare::prepared::Prepared;
 use prepare::solids::Body;
-use shade::certified::Shading;
+use shade::run::Shading;
 use shade::spans::SpanCache;
 use visibility::coverage::Coverage;
 use visibility::depth::Settled;

@@ -14,8 +14,9 @@ use crate::tracer::ladder::{Ladder, Lines, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
-use crate::tracer::scanline::shade::certified::{along, ambient, hits, lit, value};
+use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::light::Lighting;
+use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::spans::{BandSpans, SphereSpans};
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
 use crate::tracer::sphere::Sphere;
@@ -162,30 +163,29 @@ impl Case<'_> {
     #[inline(always)]
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
         let row_sphere = &self.row_sphere;
-        let m = row_sphere.off.at(self.grid.place(row));
-        let light = along(simd, &row_sphere.light, m);
+        let y = self.grid.place(row);
+        let m = row_sphere.off.at(y);
+        let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
         let mut cache = BandSpans::NONE;
         cache.find(simd, row_sphere, below, self.grid);
         let chord = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.grid.place(first);
-            let hits = hits(simd, row_sphere, m, x);
-            let facing = value::<S>(&light, hits.q, hits.s);
+            let hits = in_row.hits(x);
+            let facing = in_row.value(&row_sphere.light, &hits);
             let [deep, shallow] = [0, 1].map(|zone| {
-                let ambient = ambient(simd, row_sphere, zone);
-                lit(simd, row_sphere, m, x, facing, &ambient, Some(zone))
+                let ambient = in_row.ambient(zone);
+                in_row.lit(x, facing, &ambient, (zone, u64::MAX))
             });
-            let forms = self
-                .forms
-                .map(|form| value::<S>(&along(simd, &form, m), hits.q, hits.s));
+            let forms = self.forms.map(|form| in_row.value(&form, &hits));
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = row_sphere.squared_radius - m * m - q * q;
                 if squared < row_sphere.least[1] {
                     continue;
                 }
-                let [lower, upper] = if squared < row_sphere.least[0] {
+                let samples = if squared < row_sphere.least[0] {
                     shallow
                 } else {
                     deep
@@ -228,8 +228,8 @@ impl Case<'_> {
                     let (vector, place) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
                     channels.note_between(
                         truth,
-                        lower[vector].as_slice()[place],
-                        upper[vector].as_slice()[place],
+                        samples[vector][0].as_slice()[place],
+                        samples[vector][1].as_slice()[place],
                     );
                 }
             }

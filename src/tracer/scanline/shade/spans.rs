@@ -187,7 +187,9 @@ impl BandSpans {
             }
             if let Some(halfway) = &sphere.halfway {
                 // |n − h| is no less than the part of it along m.
-                let is_near = (m - halfway.at[1]).abs().simd_le(halfway.reach);
+                let is_near = (m * sphere.inverse_radius - halfway.direction[1])
+                    .abs()
+                    .simd_le(halfway.reach);
                 if is_near.any_true() {
                     let (inside, settled) = rows.arc(&halfway.form, sphere.highlight, known);
                     let mut bright = known;
@@ -227,7 +229,7 @@ fn put<S: Simd>(ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
     put_columns::<S>(ends[1], &mut runs[1][lane..]);
 }
 
-// No closures below: see `shade/certified.rs`.
+// No closures below: see `shade/run.rs`.
 
 impl<S: Simd> InRows<'_, S> {
     /// q in a column of each row.

@@ -52,11 +52,6 @@ impl LinearForm {
         is_concave: None,
     };
 
-    /// The vector that n is multiplied with, in the axes of q, m and s.
-    pub(crate) fn vector(&self) -> [f64; 3] {
-        [self.across, self.off, self.out]
-    }
-
     /// A form without a constant, and one.
     fn plus(self, constant: Bounded) -> LinearForm {
         let magnitude = constant.value().abs();
@@ -107,14 +102,14 @@ pub(crate) struct Stretch {
 pub(crate) struct Halfway {
     /// n·h.
     pub(crate) form: LinearForm,
-    /// R h, in the axes of q, m and s.
-    pub(crate) at: [f64; 3],
+    /// h, of length 1, in the axes of q, m and s.
+    pub(crate) direction: [f64; 3],
     /// In each zone, a bound on n times the error of 1 − n·h: a constant, and what 1 − n·h is
     /// multiplied with.
     pub(crate) errors: [[f64; 2]; ZONES],
     /// 2¹⁻ⁿ.
     pub(crate) least: f64,
-    /// Where m is farther than this from that of R h there is no highlight.
+    /// Where m/R is farther than this from that of h there is no highlight.
     pub(crate) reach: f64,
 }
 
@@ -161,23 +156,27 @@ impl Known {
 
     /// `h` is that of a view, `radius` the sphere's.
     fn halfway(&self, h: [Bounded; 3], highlight: &Highlight, radius: Bounded) -> Halfway {
-        let at = h.map(|component| component * radius);
-        // Y = |D|²/2R² with D = (q, m, s) − R h. With |ε| the length of the error of D but for its
-        // rounding, which is less than u of D, that of Y is at most (|D| |ε| + |ε|²)/R² +
-        // 16u Y, and what is wrong with R. Any bound on |D|/R that is linear in Y will do:
-        // (δ + 2Y/δ)/2 is one for each δ, and touches it where δ² = 2Y; a highlight is steepest at
-        // 1/√n.
+        // Y = |D|²/2 with D = (q, m, s)/R − h. With |ε| the length of the error of D but for the
+        // rounding of its differences, which is less than u of D, that of Y is at most |D| |ε| +
+        // |ε|² + 16u Y. Any bound on |D| that is linear in Y will do: (δ + 2Y/δ)/2 is one for each
+        // δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
-        let inexact = 3.0 * radius.error() / radius.value() + 16.0 * U;
+        // No part of n is more than 1, and it is multiplied with 1/R, which rounds, as the product
+        // does.
+        let scaled = radius.error() / radius.value() + 3.0 * U;
+        let part = |error: f64, h: Bounded| error / radius.value() + h.error() + scaled;
         let errors = self.out.map(|out| {
-            let known = [self.across, self.off, out];
-            let off: f64 = known.iter().zip(&at).map(|(e, at)| e + at.error()).sum();
-            let off = off / radius.value() * MORE;
+            let [across, off, out] = [
+                part(self.across, h[0]),
+                part(self.off, h[1]),
+                part(out, h[2]),
+            ];
+            let off = (across + off + out) * MORE;
             // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
             // products, by u of what they give.
             let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
-            let slope = n * (off / steepest + inexact) * MORE;
+            let slope = n * (off / steepest + 16.0 * U) * MORE;
             let tame = constant + slope * highlight.limit < 1.0 / 64.0;
             if tame {
                 [constant, slope]
@@ -187,10 +186,10 @@ impl Known {
         });
         Halfway {
             form: self.form(h.map(|component| component / radius)),
-            at: at.map(Bounded::value),
+            direction: h.map(Bounded::value),
             errors,
             least: highlight.least_power,
-            reach: (highlight.reach * self.radius + self.off + at[1].error()) * MORE,
+            reach: (highlight.reach + part(self.off, h[1])) * MORE,
         }
     }
 }
@@ -289,7 +288,8 @@ impl RowSphere {
             for (all, light) in errors.iter_mut().zip(light_errors) {
                 *all = error(light).max(*all);
             }
-            parts.map(Bounded::value)
+            // +0 for −0: a sum that begins with +0 is not −0.
+            parts.map(|part| part.value() + 0.0)
         };
         let [red, green, blue] = lighting.coefficients;
         let channels = [

@@ -9,10 +9,10 @@ use crate::tracer::in_doubt::InDoubt;
 use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::precision::Precision;
-use crate::tracer::scanline::shade::certified::{self, Run, Shading};
+use crate::tracer::scanline::shade::policy::Certified;
+use crate::tracer::scanline::shade::run::{Run, Shading, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::spans::{SphereSpans, bit_of};
-use crate::tracer::scanline::shade::unchecked;
 use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
 
@@ -171,9 +171,9 @@ impl<'r> Row<'r> {
             shading,
         };
         dispatch!(self.level, simd => match self.precision {
-            Precision::Bounded => certified::shade(simd, shaded, &mut run),
-            Precision::Double => unchecked::shade_in_double(simd, shaded, &mut run),
-            Precision::Single => unchecked::shade_in_single(simd, shaded, &mut run),
+            Precision::Bounded => shade::<_, Certified>(simd, shaded, &mut run),
+            Precision::Double => shade::<_, f64>(simd, shaded, &mut run),
+            Precision::Single => shade::<_, f32>(simd, shaded, &mut run),
         });
     }
 

@@ -1,0 +1,206 @@
+//! Equation 4-1 along a row of a sphere: `shading.rs` and `sphere.rs` in the axes of q, m and s, as
+//! derived in `shade/sphere.rs`, for as many pixels as a vector holds. What is known of the errors
+//! is the policy's.
+
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+use crate::tracer::scanline::shade::caster::Caster;
+use crate::tracer::scanline::shade::lane::Lane;
+use crate::tracer::scanline::shade::policy::{Answers, Mask, Policy, Samples, Vector};
+use crate::tracer::scanline::shade::sphere::{Halfway, LinearForm, RowSphere};
+
+// No closures below: see `shade/run.rs`.
+
+/// Neighbouring pixels of a sphere in a row: where they are hit.
+#[derive(Clone, Copy)]
+pub(crate) struct Hits<V> {
+    pub(crate) q: V,
+    pub(crate) s: V,
+}
+
+/// A sphere in a row, as a policy computes it.
+pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
+    simd: S,
+    sphere: &'s RowSphere,
+    m: f64,
+    /// R² − m².
+    squared: Vector<S, P>,
+}
+
+impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, sphere: &'s RowSphere, y: f64) -> Self {
+        let m = sphere.off.at(y);
+        SphereInRow {
+            simd,
+            sphere,
+            m,
+            squared: splat::<S, P>(simd, sphere.squared_radius - m * m),
+        }
+    }
+
+    /// A linear form at some hits.
+    #[inline(always)]
+    pub(crate) fn value(&self, form: &LinearForm, hits: &Hits<Vector<S, P>>) -> Vector<S, P> {
+        let across = splat::<S, P>(self.simd, form.across);
+        let out = splat::<S, P>(self.simd, form.out);
+        let of_row = splat::<S, P>(self.simd, form.of_row(self.m));
+        P::product_plus(hits.s, out, P::product_plus(hits.q, across, of_row))
+    }
+
+    /// The hits from X = `x` on: s = √(R² − m² − q²).
+    #[inline(always)]
+    pub(crate) fn hits(&self, x: f64) -> Hits<Vector<S, P>> {
+        let q = P::Lane::across(self.simd, x, self.sphere.center);
+        let squared = P::product_plus(q, -q, self.squared);
+        Hits {
+            q,
+            s: squared.max(P::Lane::of(0.0)).sqrt(),
+        }
+    }
+
+    /// Which hits have a caster between them and the light.
+    #[inline(always)]
+    pub(crate) fn behind(&self, caster: &Caster<'_>, hits: &Hits<Vector<S, P>>) -> Answers<S, P> {
+        match caster {
+            Caster::Polyhedron(forms) => {
+                let (mut yes, mut no) = (self.mask(true), self.mask(false));
+                for form in *forms {
+                    let (inside, outside) = P::is_inside(self.value(form, hits), form.error);
+                    yes &= inside;
+                    no |= outside;
+                }
+                (yes, no)
+            }
+            Caster::Sphere(cylinder) => {
+                let [x, y, z] = &cylinder.moment;
+                let x = self.value(x, hits);
+                let y = self.value(y, hits);
+                let z = self.value(z, hits);
+                let depth = splat::<S, P>(self.simd, cylinder.reach) - (x * x + y * y + z * z);
+                let (inside, outside) = P::is_inside(depth, cylinder.error);
+                // A sphere that is neither before nor behind throws no shadow.
+                let before = &cylinder.before;
+                let (not_before, is_before) = P::is_inside(-self.value(before, hits), before.error);
+                (inside & is_before, outside | not_before)
+            }
+        }
+    }
+
+    /// All pixels, or none.
+    #[inline(always)]
+    pub(crate) fn mask(&self, all: bool) -> Mask<S, P> {
+        Mask::<S, P>::splat(self.simd, all)
+    }
+
+    /// Ambient light as it is in all samples, with a bound on the errors of all but the highlight
+    /// in a zone.
+    #[inline(always)]
+    pub(crate) fn ambient(&self, zone: usize) -> Samples<S, P> {
+        let error = splat::<S, P>(self.simd, self.sphere.errors[zone]);
+        let [red, green, blue] = P::Lane::samples_of(self.simd, &self.sphere.color.ambient);
+        [
+            P::within(red, error),
+            P::within(green, error),
+            P::within(blue, error),
+        ]
+    }
+
+    /// Samples of pixels in the light, from X = `x` on: ambient + diffuse · max(0, n·l) +
+    /// specular · (n·h)ⁿ. `light` is their n·l; those that may have a highlight are `bright`, bit
+    /// by bit.
+    #[inline(always)]
+    pub(crate) fn lit(
+        &self,
+        x: f64,
+        light: Vector<S, P>,
+        ambient: &Samples<S, P>,
+        (zone, bright): (usize, u64),
+    ) -> Samples<S, P> {
+        let mut samples = *ambient;
+        let light = spread(light.max(P::Lane::of(0.0)));
+        let diffuse = P::Lane::samples_of(self.simd, &self.sphere.color.diffuse);
+        for i in 0..3 {
+            for sample in samples[i].as_mut() {
+                *sample = P::product_plus(light[i], diffuse[i], *sample);
+            }
+        }
+        if let Some(halfway) = &self.sphere.halfway
+            && bright != 0
+        {
+            let power = self.highlight(halfway, &self.hits(x), (zone, bright));
+            let specular = P::Lane::samples_of(self.simd, &self.sphere.color.specular);
+            for (side, power) in power.as_ref().iter().enumerate() {
+                // No coefficient is negative, so what is below stays below.
+                let power = spread(*power);
+                for i in 0..3 {
+                    let sample = &mut samples[i].as_mut()[side];
+                    *sample = P::product_plus(power[i], specular[i], *sample);
+                }
+            }
+        }
+        samples
+    }
+
+    /// (n·h)ⁿ where pixels are bright.
+    #[inline(always)]
+    fn highlight(
+        &self,
+        halfway: &Halfway,
+        hits: &Hits<Vector<S, P>>,
+        (zone, bright): (usize, u64),
+    ) -> P::Sides<Vector<S, P>> {
+        let (simd, of) = (self.simd, P::Lane::of);
+        // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
+        // is bright.
+        let [across, off, out] = halfway.direction;
+        let inverse = splat::<S, P>(simd, self.sphere.inverse_radius);
+        let across = P::product_plus(hits.q, inverse, splat::<S, P>(simd, -across));
+        let off = self.m * self.sphere.inverse_radius - off;
+        let out = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -out));
+        let squared = across * across + out * out + of(off * off);
+        let missing = (squared * of(0.5)).min(of(1.0 - self.sphere.highlight));
+        let power = power::<S, P>(simd, missing, self.sphere.exponent);
+        let power = P::where_bright(simd, power, bright);
+        let [constant, slope] = halfway.errors[zone];
+        // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is
+        // for max(X, x) instead of x.
+        let steep = power * of(2.0 * 1.06) + of(1.06 * halfway.least);
+        P::within(power, (missing * of(slope) + of(constant)) * steep)
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd, P: Policy<S>>(simd: S, value: f64) -> Vector<S, P> {
+    Vector::<S, P>::splat(simd, P::Lane::of(value))
+}
+
+/// (1 − `missing`)ⁿ, by squaring.
+#[inline(always)]
+fn power<S: Simd, P: Policy<S>>(simd: S, missing: Vector<S, P>, exponent: u32) -> Vector<S, P> {
+    let mut power = P::factor(splat::<S, P>(simd, 0.0));
+    let (mut square, mut bits) = (P::factor(missing), exponent);
+    loop {
+        if bits & 1 == 1 {
+            power = P::product(power, square);
+        }
+        bits >>= 1;
+        if bits == 0 {
+            return P::value(power);
+        }
+        square = P::square(square);
+    }
+}
+
+/// What is one number a pixel, once for each of its three samples.
+#[inline(always)]
+fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
+    let mut samples = [pixels; 3];
+    for (i, vector) in samples.iter_mut().enumerate() {
+        for (lane, sample) in vector.as_mut_slice().iter_mut().enumerate() {
+            *sample = pixels.as_slice()[(i * V::LEN + lane) / 3];
+        }
+    }
+    samples
+}

@@ -1,0 +1,181 @@
+//! What the shading of spheres knows of its errors: certified f64 has bounds on them, f32 and f64
+//! have none.
+//!
+//! f32 and f64 round after every operation, so that their pictures are the same bytes on every
+//! machine. Certified f64 multiplies and adds at once where the processor can, which rounds once
+//! instead of twice: the errors are within the same bounds, and what is certain is the same.
+
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+use crate::tracer::scanline::shade::lane::Lane;
+
+/// A vector of a policy.
+pub(crate) type Vector<S, P> = <<P as Policy<S>>::Lane as Lane>::Vector<S>;
+
+/// A vector's pixels of which the answer to a question is yes, and those of which it is no: with
+/// bounds some may be neither.
+pub(crate) type Answers<S, P> = (Mask<S, P>, Mask<S, P>);
+
+/// Some pixels of a vector.
+pub(crate) type Mask<S, P> = <Vector<S, P> as SimdBase<S>>::Mask;
+
+/// Three vectors of samples as they lie in memory.
+pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<Vector<S, P>>; 3];
+
+/// What is known of errors.
+pub(crate) trait Policy<S: Simd> {
+    type Lane: Lane;
+
+    /// With bounds the least and the most that a number can be, without them the number.
+    type Sides<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
+
+    /// a b + c.
+    fn product_plus(a: Vector<S, Self>, b: Vector<S, Self>, c: Vector<S, Self>) -> Vector<S, Self>;
+
+    /// Whether depths, which have a bound on their errors, are 0 or more.
+    fn is_inside(depth: Vector<S, Self>, error: f64) -> Answers<S, Self>;
+
+    /// Numbers that have a bound on their errors.
+    fn within(value: Vector<S, Self>, error: Vector<S, Self>) -> Self::Sides<Vector<S, Self>>;
+
+    /// 1 − `missing` in the form in which its powers are computed.
+    #[inline(always)]
+    fn factor(missing: Vector<S, Self>) -> Vector<S, Self> {
+        -missing + <Self::Lane as Lane>::of(1.0)
+    }
+
+    /// The product of two factors.
+    #[inline(always)]
+    fn product(a: Vector<S, Self>, b: Vector<S, Self>) -> Vector<S, Self> {
+        a * b
+    }
+
+    /// The square of a factor.
+    #[inline(always)]
+    fn square(factor: Vector<S, Self>) -> Vector<S, Self> {
+        factor * factor
+    }
+
+    /// The number that a factor stands for.
+    #[inline(always)]
+    fn value(factor: Vector<S, Self>) -> Vector<S, Self> {
+        factor
+    }
+
+    /// Highlights of the pixels that may have one, bit by bit. Those of others are at most 2⁻⁵⁹,
+    /// which bounds on the errors of samples count, and are 0 where there are no bounds.
+    #[inline(always)]
+    fn where_bright(_: S, highlight: Vector<S, Self>, _: u64) -> Vector<S, Self> {
+        highlight
+    }
+
+    /// Samples rounded to f32, and bit by bit the pixels of which they are in doubt; `low` and
+    /// `high` as in [`Lane::narrow`].
+    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64);
+}
+
+/// f64 with bounds.
+pub(crate) struct Certified;
+
+impl<S: Simd> Policy<S> for Certified {
+    type Lane = f64;
+    type Sides<V: Copy> = [V; 2];
+
+    #[inline(always)]
+    fn product_plus(a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+        a.mul_add(b, c)
+    }
+
+    #[inline(always)]
+    fn is_inside(depth: S::f64s, error: f64) -> Answers<S, Self> {
+        (depth.simd_gt(error), depth.simd_lt(-error))
+    }
+
+    #[inline(always)]
+    fn within(value: S::f64s, error: S::f64s) -> [S::f64s; 2] {
+        [value - error, value + error]
+    }
+
+    #[inline(always)]
+    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64) {
+        let [[a, b], [c, d], [e, f]] = low;
+        let [[g, h], [i, j], [k, l]] = high;
+        let lower = f64::narrow::<S>([a, c, e], [g, i, k]);
+        let upper = f64::narrow::<S>([b, d, f], [h, j, l]);
+        // What is not a number is not equal to itself, either.
+        let first = !lower[0].simd_eq(upper[0]);
+        let second = !lower[1].simd_eq(upper[1]);
+        let third = !lower[2].simd_eq(upper[2]);
+        let mut doubts = 0;
+        if (first | second | third).any_true() {
+            for (i, differ) in [first, second, third].into_iter().enumerate() {
+                let mut samples = differ.to_bitmask();
+                while samples != 0 {
+                    let sample = i * S::f32s::LEN + samples.trailing_zeros() as usize;
+                    doubts |= 1 << (sample / 3);
+                    samples &= samples - 1;
+                }
+            }
+        }
+        (upper, doubts)
+    }
+}
+
+/// Without bounds.
+impl<S: Simd, L: Lane> Policy<S> for L {
+    type Lane = L;
+    type Sides<V: Copy> = [V; 1];
+
+    #[inline(always)]
+    fn product_plus(a: L::Vector<S>, b: L::Vector<S>, c: L::Vector<S>) -> L::Vector<S> {
+        a * b + c
+    }
+
+    #[inline(always)]
+    fn is_inside(depth: L::Vector<S>, _: f64) -> Answers<S, Self> {
+        let is_inside = depth.simd_ge(L::of(0.0));
+        (is_inside, !is_inside)
+    }
+
+    #[inline(always)]
+    fn within(value: L::Vector<S>, _: L::Vector<S>) -> [L::Vector<S>; 1] {
+        [value]
+    }
+
+    // A factor 1 − x is kept as x: 1 − x would lose the digits of a small x.
+
+    #[inline(always)]
+    fn factor(missing: L::Vector<S>) -> L::Vector<S> {
+        missing
+    }
+
+    #[inline(always)]
+    fn product(a: L::Vector<S>, b: L::Vector<S>) -> L::Vector<S> {
+        a + b - a * b
+    }
+
+    #[inline(always)]
+    fn square(factor: L::Vector<S>) -> L::Vector<S> {
+        factor * (-factor + L::of(2.0))
+    }
+
+    #[inline(always)]
+    fn value(factor: L::Vector<S>) -> L::Vector<S> {
+        -factor.min(L::of(1.0)) + L::of(1.0)
+    }
+
+    // A picture would else depend on where vectors begin.
+    #[inline(always)]
+    fn where_bright(simd: S, highlight: L::Vector<S>, bright: u64) -> L::Vector<S> {
+        let is_bright = <L::Vector<S> as SimdBase<S>>::Mask::from_bitmask(simd, bright);
+        is_bright.select(highlight, L::Vector::<S>::splat(simd, L::of(0.0)))
+    }
+
+    #[inline(always)]
+    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64) {
+        let [[a], [b], [c]] = low;
+        let [[d], [e], [f]] = high;
+        (L::narrow::<S>([a, b, c], [d, e, f]), 0)
+    }
+}

@@ -1,0 +1,220 @@
+//! A run of pixels that see a sphere, many at a time.
+
+use std::ops::Range;
+
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+
+use crate::tracer::decision::Decision;
+use crate::tracer::scanline::grid::{Columns, Grid};
+use crate::tracer::scanline::shade::equation::SphereInRow;
+use crate::tracer::scanline::shade::policy::{Policy, Vector};
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::sphere::LinearForm;
+use crate::tracer::scanline::write::paint::{Paint, fill};
+
+/// What the shading of a run needs, kept for the next.
+#[derive(Default)]
+pub(crate) struct Shading {
+    /// Which casters can throw a shadow on any pixel of the run.
+    pub(crate) in_reach: Vec<usize>,
+    /// The columns left in doubt.
+    pub(crate) doubts: Vec<u32>,
+}
+
+/// The pixels of a run, all of them known: where they are, and where they go.
+pub(crate) struct Run<'r> {
+    pub(crate) grid: Grid,
+    /// Y.
+    pub(crate) y: f64,
+    /// The first column.
+    pub(crate) from: u32,
+    /// The columns in the innermost zone, and those that may have a highlight.
+    pub(crate) deep: Columns,
+    pub(crate) bright: Columns,
+    /// Whether all of them are certainly not turned away from the light, or it does not matter.
+    pub(crate) is_facing: bool,
+    pub(crate) samples: &'r mut [f32],
+    pub(crate) decisions: Option<&'r mut [Decision]>,
+    /// What pixels in shadow show.
+    pub(crate) in_shadow: &'r Paint,
+    pub(crate) shading: &'r mut Shading,
+}
+
+// No closures below: the instructions of a level are only there for what is inlined into its
+// dispatch, which closures given to other functions are not.
+
+impl Run<'_> {
+    /// X of a pixel, and of that so many pixels on.
+    #[inline(always)]
+    fn places(&self, first: usize, on: usize) -> [f64; 2] {
+        let x = self.grid.place(self.from + first as u32);
+        [x, x + 3.0 * on as f64]
+    }
+
+    /// Those of `width` pixels that are in some columns, bit by bit.
+    #[inline(always)]
+    fn among(&self, columns: Columns, first: usize, width: usize) -> u64 {
+        let begin = self.from + first as u32;
+        let end = begin + width as u32;
+        let from = columns.0.clamp(begin, end) - begin;
+        let to = columns.1.clamp(begin, end) - begin;
+        (1 << to) - (1 << from)
+    }
+
+    /// Writes some pixels, those that are in shadow bit by bit.
+    #[inline(always)]
+    fn darken(&mut self, pixels: Range<usize>, in_shadow: u64) {
+        if in_shadow != 0 {
+            let samples = self.samples[3 * pixels.start..3 * pixels.end].chunks_exact_mut(3);
+            for (i, pixel) in samples.enumerate() {
+                if in_shadow >> i & 1 == 1 {
+                    pixel.copy_from_slice(&self.in_shadow.color());
+                }
+            }
+        }
+    }
+
+    /// Writes the decisions of some pixels, bit by bit in shadow or not.
+    #[inline(always)]
+    fn decide(&mut self, shaded: &ShadedSphere<'_>, pixels: Range<usize>, in_shadow: u64) {
+        if let Some(decisions) = &mut self.decisions {
+            for (i, decision) in decisions[pixels].iter_mut().enumerate() {
+                *decision = if in_shadow >> i & 1 == 1 {
+                    self.in_shadow.decision
+                } else {
+                    shaded.lit
+                };
+            }
+        }
+    }
+}
+
+/// Shades a run of pixels that see a sphere.
+#[inline(always)]
+pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
+    // So many pixels are written at a time; where a vector holds fewer, they are in two of them.
+    let (width, lanes) = (S::f32s::LEN, Vector::<S, P>::LEN);
+    let row = SphereInRow::<S, P>::new(simd, &shaded.sphere, run.y);
+    let asks = !run.is_facing || !run.shading.in_reach.is_empty();
+    let count = run.samples.len() / 3;
+    let last = count.saturating_sub(width);
+    let (mut done, mut first) = (0, 0);
+    let mut lights = both_lights(&row, &shaded.sphere.light, run.places(first, lanes));
+    while done < count {
+        // The last vector may lie on part of the one before it.
+        let next = (first + width).min(last);
+        // A root takes its time: that of the next vector is begun before this one waits for its
+        // own.
+        let now = lights;
+        if next > first {
+            lights = both_lights(&row, &shaded.sphere.light, run.places(next, lanes));
+        }
+        let here = width.min(count - first);
+        let all = u64::MAX >> (64 - here);
+        let column = run.from + first as u32;
+        let places = run.places(first, lanes);
+        let (mut in_shadow, mut unknown) = (0, 0);
+        if asks {
+            // Of a short run there may be nothing in the second vector.
+            for half in 0..here.div_ceil(lanes) {
+                let (dark, doubts) = shadowed(&row, shaded, run, places[half], now[half]);
+                in_shadow |= dark << (half * lanes);
+                unknown |= doubts << (half * lanes);
+            }
+        }
+        if in_shadow & all == all {
+            fill(
+                simd,
+                &mut run.samples[3 * first..3 * (first + here)],
+                run.in_shadow,
+            );
+        } else {
+            let is_deep = column >= run.deep.0 && column + here as u32 <= run.deep.1;
+            let zone = usize::from(!is_deep);
+            let ambient = row.ambient(zone);
+            let bright = run.among(run.bright, first, width);
+            let lit_low = row.lit(places[0], now[0], &ambient, (zone, bright));
+            let mut lit_high = lit_low;
+            if lanes < width {
+                lit_high = row.lit(places[1], now[1], &ambient, (zone, bright >> lanes));
+            }
+            let (samples, doubts) = P::round(lit_low, lit_high);
+            put::<S>(&mut run.samples[3 * first..3 * (first + here)], &samples);
+            unknown = (unknown | doubts) & !in_shadow;
+            run.darken(first..first + here, in_shadow);
+        }
+        run.decide(shaded, first..first + here, in_shadow);
+        let mut doubts = unknown & all;
+        while doubts != 0 {
+            // Where this vector has written over the one before, its own bounds count.
+            let doubt = column + doubts.trailing_zeros();
+            if doubt >= run.from + done as u32 || !run.shading.doubts.contains(&doubt) {
+                run.shading.doubts.push(doubt);
+            }
+            doubts &= doubts - 1;
+        }
+        done = first + here;
+        first = next;
+    }
+}
+
+/// n·l of the pixels from each of two places on; where one vector holds them all, of the first.
+#[inline(always)]
+fn both_lights<S: Simd, P: Policy<S>>(
+    row: &SphereInRow<'_, S, P>,
+    light: &LinearForm,
+    [x, next]: [f64; 2],
+) -> [Vector<S, P>; 2] {
+    let low = row.value(light, &row.hits(x));
+    if Vector::<S, P>::LEN == S::f32s::LEN {
+        return [low; 2];
+    }
+    [low, row.value(light, &row.hits(next))]
+}
+
+/// Which pixels from X = `x` on are in shadow, and of which it is not known, bit by bit. `light`
+/// is their n·l.
+#[inline(always)]
+fn shadowed<S: Simd, P: Policy<S>>(
+    row: &SphereInRow<'_, S, P>,
+    shaded: &ShadedSphere<'_>,
+    run: &Run<'_>,
+    x: f64,
+    light: Vector<S, P>,
+) -> (u64, u64) {
+    let (mut dark, mut lit) = (row.mask(false), row.mask(true));
+    if !run.is_facing {
+        (dark, lit) = P::is_inside(-light, shaded.sphere.light.error);
+    }
+    if !run.shading.in_reach.is_empty() {
+        let hits = row.hits(x);
+        for &caster in &run.shading.in_reach {
+            let (behind, free) = row.behind(&shaded.casters[caster], &hits);
+            dark |= behind;
+            lit &= free;
+        }
+    }
+    (dark.to_bitmask(), (!(dark | lit)).to_bitmask())
+}
+
+/// Writes as many samples as there are, or as three vectors hold.
+#[inline(always)]
+fn put<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
+    let width = S::f32s::LEN;
+    if samples.len() == 3 * width {
+        for (i, vector) in vectors.iter().enumerate() {
+            vector.store_slice(&mut samples[i * width..(i + 1) * width]);
+        }
+    } else {
+        let mut all = [0.0; 3 * 16];
+        for (i, vector) in vectors.iter().enumerate() {
+            vector.store_slice(&mut all[i * width..(i + 1) * width]);
+        }
+        // By constant lengths, which are moves instead of a call.
+        let (pixels, _) = samples.as_chunks_mut::<3>();
+        for (pixel, from) in pixels.iter_mut().zip(all.as_chunks::<3>().0) {
+            *pixel = *from;
+        }
+    }
+}
