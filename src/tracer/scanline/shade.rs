@@ -9,3 +9,5 @@ pub(super) mod run;
 pub(super) mod shaded;
 pub(super) mod spans;
 pub(super) mod sphere;
+#[cfg(test)]
+mod tests;

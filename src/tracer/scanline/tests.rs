@@ -54,7 +54,7 @@ const SCENES: [&str; 8] = [
 ];
 
 /// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
-fn each_frame(size: u32, check: impl Fn(&str, &RowTracer<'_, Ladder<'_>>)) {
+pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, Ladder<'_>>)) {
     for text in SCENES {
         let scene = match text {
             "" => Scene::builtin(),
@@ -128,7 +128,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
 }
 
 /// The same decision where it is not in shadow.
-fn lit(decision: Decision) -> Decision {
+pub(super) fn lit(decision: Decision) -> Decision {
     let lit = |seen: Seen| Seen {
         in_shadow: false,
         ..seen

@@ -1,0 +1,99 @@
+//! The certified shader alone, against the pixels' own definition.
+
+use fearless_simd::{Level, dispatch};
+
+use crate::tracer::decision::Decision;
+use crate::tracer::ladder::{Ladder, Pixels as _};
+use crate::tracer::scanline::RowTracer;
+use crate::tracer::scanline::prepare::solids::Body;
+use crate::tracer::scanline::shade::policy::Certified;
+use crate::tracer::scanline::shade::run::{Run, Shading, shade};
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::spans::SpanCache;
+use crate::tracer::scanline::tests::{each_frame, lit};
+
+const SIZE: u32 = 70;
+
+/// Pixels that see a sphere: those that the shader is certain of, and those in doubt.
+#[derive(Default)]
+struct Counts {
+    certain: usize,
+    in_doubt: usize,
+}
+
+/// Shades all of a sphere, hidden or not, without what spans tell of shadows: each pixel is asked
+/// for all that may be in the way of the light. What is certain is held against pixels that see it.
+fn check(
+    tracer: &RowTracer<'_, Ladder<'_>>,
+    shaded: &ShadedSphere<'_>,
+    (level, name): (Level, &str),
+    counts: &mut Counts,
+) {
+    let frame = &tracer.frame;
+    let mut cache = SpanCache::default();
+    cache.begin(frame.shaded_spheres);
+    for row in 0..SIZE {
+        let chord = cache.of(shaded, row, level, frame.grid);
+        let (from, to) = chord.known;
+        let count = (to - from) as usize;
+        let mut samples = vec![0.0; 3 * count];
+        let mut decisions = vec![Decision::Background; count];
+        let mut shading = Shading::default();
+        shading.in_reach.extend(0..shaded.casters.len());
+        let mut run = Run {
+            grid: frame.grid,
+            y: frame.grid.place(row),
+            from,
+            deep: chord.deep,
+            bright: chord.bright,
+            is_facing: !shaded.sphere.shadows,
+            samples: &mut samples,
+            decisions: Some(&mut decisions),
+            in_shadow: &frame.paints[shaded.in_shadow],
+            shading: &mut shading,
+        };
+        dispatch!(level, simd => shade::<_, Certified>(simd, shaded, &mut run));
+        for (column, (samples, decided)) in (from..).zip(samples.chunks(3).zip(decisions)) {
+            let ((decision, color), _) = tracer.pixels.pixel(column, row);
+            if lit(decision) != shaded.lit {
+                continue;
+            }
+            if shading.doubts.contains(&column) {
+                counts.in_doubt += 1;
+                continue;
+            }
+            assert_eq!(
+                (decided, samples),
+                (decision, &color[..]),
+                "{name}, {level:?}, ({column}, {row})"
+            );
+            counts.certain += 1;
+        }
+    }
+}
+
+#[test]
+fn what_is_certain_is_what_pixels_are_defined_to_show() {
+    for level in [Level::baseline(), Level::new()] {
+        let mut counts = Counts::default();
+        each_frame(SIZE, |name, tracer| {
+            for mirrored in [false, true] {
+                let solids = tracer.frame.solids(mirrored);
+                if solids.mirrored != mirrored {
+                    continue;
+                }
+                for solid in solids.solids {
+                    if let Body::Sphere(shaded) = &solid.body {
+                        check(tracer, shaded, (level, name), &mut counts);
+                    }
+                }
+            }
+        });
+        // A shader that is certain of nothing would pass, too.
+        let Counts { certain, in_doubt } = counts;
+        assert!(
+            certain > 1000 && in_doubt < certain / 50,
+            "{certain}, {in_doubt}"
+        );
+    }
+}
