@@ -13,7 +13,6 @@ use crate::tracer::scanline::shade::sphere::{Halfway, LinearForm, RowSphere};
 // No closures below: see `shade/run.rs`.
 
 /// Neighbouring pixels of a sphere in a row: where they are hit.
-#[derive(Clone, Copy)]
 pub(crate) struct Hits<V> {
     pub(crate) q: V,
     pub(crate) s: V,
@@ -60,6 +59,16 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         }
     }
 
+    /// n·l from each of two places on; of the first where a vector holds all pixels from there on.
+    #[inline(always)]
+    pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [Vector<S, P>; 2] {
+        let mut lights = [self.value(&self.sphere.light, &self.hits(x)); 2];
+        if Vector::<S, P>::LEN < S::f32s::LEN {
+            lights[1] = self.value(&self.sphere.light, &self.hits(next));
+        }
+        lights
+    }
+
     /// Which hits have a caster between them and the light.
     #[inline(always)]
     pub(crate) fn behind(&self, caster: &Caster<'_>, hits: &Hits<Vector<S, P>>) -> Answers<S, P> {
@@ -75,9 +84,11 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
             }
             Caster::Sphere(cylinder) => {
                 let [x, y, z] = &cylinder.moment;
-                let x = self.value(x, hits);
-                let y = self.value(y, hits);
-                let z = self.value(z, hits);
+                let [x, y, z] = [
+                    self.value(x, hits),
+                    self.value(y, hits),
+                    self.value(z, hits),
+                ];
                 let depth = splat::<S, P>(self.simd, cylinder.reach) - (x * x + y * y + z * z);
                 let (inside, outside) = P::is_inside(depth, cylinder.error);
                 // A sphere that is neither before nor behind throws no shadow.

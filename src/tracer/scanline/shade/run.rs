@@ -10,7 +10,6 @@ use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::policy::{Policy, Vector};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::LinearForm;
 use crate::tracer::scanline::write::paint::{Paint, fill};
 
 /// What the shading of a run needs, kept for the next.
@@ -52,14 +51,12 @@ impl Run<'_> {
         [x, x + 3.0 * on as f64]
     }
 
-    /// Those of `width` pixels that are in some columns, bit by bit.
+    /// Those of some pixels that may have a highlight, bit by bit.
     #[inline(always)]
-    fn among(&self, columns: Columns, first: usize, width: usize) -> u64 {
+    fn bright(&self, first: usize, count: usize) -> u64 {
         let begin = self.from + first as u32;
-        let end = begin + width as u32;
-        let from = columns.0.clamp(begin, end) - begin;
-        let to = columns.1.clamp(begin, end) - begin;
-        (1 << to) - (1 << from)
+        let (end, (from, to)) = (begin + count as u32, self.bright);
+        (1 << (to.clamp(begin, end) - begin)) - (1 << (from.clamp(begin, end) - begin))
     }
 
     /// Writes some pixels, those that are in shadow bit by bit.
@@ -100,7 +97,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
     let (mut done, mut first) = (0, 0);
-    let mut lights = both_lights(&row, &shaded.sphere.light, run.places(first, lanes));
+    let mut lights = row.lights(run.places(first, lanes));
     while done < count {
         // The last vector may lie on part of the one before it.
         let next = (first + width).min(last);
@@ -108,7 +105,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         // own.
         let now = lights;
         if next > first {
-            lights = both_lights(&row, &shaded.sphere.light, run.places(next, lanes));
+            lights = row.lights(run.places(next, lanes));
         }
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
@@ -123,24 +120,21 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
                 unknown |= doubts << (half * lanes);
             }
         }
+        let bright = run.bright(first, width);
+        let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
-            fill(
-                simd,
-                &mut run.samples[3 * first..3 * (first + here)],
-                run.in_shadow,
-            );
+            fill(simd, samples, run.in_shadow);
         } else {
             let is_deep = column >= run.deep.0 && column + here as u32 <= run.deep.1;
             let zone = usize::from(!is_deep);
             let ambient = row.ambient(zone);
-            let bright = run.among(run.bright, first, width);
             let lit_low = row.lit(places[0], now[0], &ambient, (zone, bright));
             let mut lit_high = lit_low;
             if lanes < width {
                 lit_high = row.lit(places[1], now[1], &ambient, (zone, bright >> lanes));
             }
-            let (samples, doubts) = P::round(lit_low, lit_high);
-            put::<S>(&mut run.samples[3 * first..3 * (first + here)], &samples);
+            let (rounded, doubts) = P::round(lit_low, lit_high);
+            put::<S>(samples, &rounded);
             unknown = (unknown | doubts) & !in_shadow;
             run.darken(first..first + here, in_shadow);
         }
@@ -157,20 +151,6 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         done = first + here;
         first = next;
     }
-}
-
-/// n·l of the pixels from each of two places on; where one vector holds them all, of the first.
-#[inline(always)]
-fn both_lights<S: Simd, P: Policy<S>>(
-    row: &SphereInRow<'_, S, P>,
-    light: &LinearForm,
-    [x, next]: [f64; 2],
-) -> [Vector<S, P>; 2] {
-    let low = row.value(light, &row.hits(x));
-    if Vector::<S, P>::LEN == S::f32s::LEN {
-        return [low; 2];
-    }
-    [low, row.value(light, &row.hits(next))]
 }
 
 /// Which pixels from X = `x` on are in shadow, and of which it is not known, bit by bit. `light`

@@ -212,7 +212,7 @@ pub(crate) struct RowSphere {
     pub(crate) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(crate) highlight: f64,
-    pub(crate) color: Coefficients<Cycle>,
+    pub(crate) color: Coefficients,
     /// In each zone, a bound on the error of any channel, but for what the power's adds.
     pub(crate) errors: [f64; ZONES],
     /// Whether points turned away from the light are in shadow, and not just without its diffuse
@@ -222,11 +222,10 @@ pub(crate) struct RowSphere {
 
 /// What is multiplied in ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
 /// colour.
-#[derive(Clone, Copy)]
-pub(crate) struct Coefficients<T> {
-    pub(crate) ambient: T,
-    pub(crate) diffuse: T,
-    pub(crate) specular: T,
+pub(crate) struct Coefficients {
+    pub(crate) ambient: Cycle,
+    pub(crate) diffuse: Cycle,
+    pub(crate) specular: Cycle,
 }
 
 /// Red, green, blue, red and so on, as samples lie in memory: a vector of up to 8 lanes, from any
