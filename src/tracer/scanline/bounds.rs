@@ -174,7 +174,7 @@ impl Case<'_> {
             let x = self.grid.place(first);
             let hits = in_row.hits(x);
             let facing = in_row.value(&row_sphere.light, &hits);
-            let [deep, shallow] = [0, 1].map(|zone| {
+            let zones = [0, 1, 2].map(|zone| {
                 let ambient = in_row.ambient(zone);
                 in_row.lit(x, facing, &ambient, (zone, u64::MAX))
             });
@@ -182,14 +182,12 @@ impl Case<'_> {
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = row_sphere.squared_radius - m * m - q * q;
-                if squared < row_sphere.least[1] {
+                if squared < row_sphere.least[2] {
                     continue;
                 }
-                let samples = if squared < row_sphere.least[0] {
-                    shallow
-                } else {
-                    deep
-                };
+                let least = row_sphere.least.iter();
+                let zone = least.take_while(|least| squared < **least).count();
+                let samples = zones[zone];
                 let line = self.picture.eye_ray(first + lane as u32, row);
                 let hit = self.sphere.first_hit(&line).unwrap().unwrap();
                 let shading = &self.view.shading;

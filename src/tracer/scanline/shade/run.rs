@@ -10,6 +10,7 @@ use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::policy::{Policy, Vector};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::shade::sphere::ZONES;
 use crate::tracer::scanline::write::paint::{Paint, fill};
 
 /// What the shading of a run needs, kept for the next.
@@ -28,8 +29,8 @@ pub(crate) struct Run<'r> {
     pub(crate) y: f64,
     /// The first column.
     pub(crate) from: u32,
-    /// The columns in the innermost zone, and those that may have a highlight.
-    pub(crate) deep: Columns,
+    /// The columns in each zone but the outermost, and those that may have a highlight.
+    pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
     /// Whether all of them are certainly not turned away from the light, or it does not matter.
     pub(crate) is_facing: bool,
@@ -125,8 +126,9 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         if in_shadow & all == all {
             fill(simd, samples, run.in_shadow);
         } else {
-            let is_deep = column >= run.deep.0 && column + here as u32 <= run.deep.1;
-            let zone = usize::from(!is_deep);
+            let is_out = |(from, to): Columns| column < from || column + here as u32 > to;
+            let [innermost, inner] = run.zones;
+            let zone = usize::from(is_out(innermost)) + usize::from(is_out(inner));
             let ambient = row.ambient(zone);
             let lit_low = row.lit(places[0], now[0], &ambient, (zone, bright));
             let mut lit_high = lit_low;

@@ -19,7 +19,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, places, put_columns};
 use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
 
 /// Rounding moves a place by less than so many columns; where that is not so, what is guessed with
 /// it is found to be wrong.
@@ -33,8 +33,8 @@ type Runs = [[u32; ROWS]; 2];
 pub(crate) struct BandSpans {
     /// Those that are hit deep enough inside the outline for f64 to say anything.
     known: Runs,
-    /// Those in the innermost zone.
-    deep: Runs,
+    /// Those in each zone but the outermost.
+    zones: [Runs; ZONES - 1],
     facing: Arcs,
     /// Those outside of which there is certainly no highlight.
     bright: Runs,
@@ -61,7 +61,7 @@ struct Arcs {
 #[derive(Clone, Copy)]
 pub(crate) struct SphereSpans {
     pub(crate) known: Columns,
-    pub(crate) deep: Columns,
+    pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
     /// The casters that may throw a shadow on them, by [`bit_of`].
     pub(crate) shaders: u64,
@@ -112,7 +112,7 @@ impl SpanCache {
 impl BandSpans {
     pub(crate) const NONE: BandSpans = BandSpans {
         known: [[0; ROWS]; 2],
-        deep: [[0; ROWS]; 2],
+        zones: [[[0; ROWS]; 2]; ZONES - 1],
         facing: Arcs {
             inside: [[0; ROWS]; 2],
             is_concave: true,
@@ -132,7 +132,7 @@ impl BandSpans {
         } = &self.facing;
         SphereSpans {
             known: of(&self.known),
-            deep: of(&self.deep),
+            zones: [of(&self.zones[0]), of(&self.zones[1])],
             bright: of(&self.bright),
             shaders: self.shaders,
             facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
@@ -176,10 +176,11 @@ impl BandSpans {
                 m,
                 squared: -(m * m) + sphere.squared_radius,
             };
-            let [least_deep, least] = sphere.least;
-            let (known, deep) = (rows.chord(least), rows.chord(least_deep));
+            let [innermost, inner, least] = sphere.least;
+            let known = rows.chord(least);
             put::<S>(known, &mut self.known, lane);
-            put::<S>(deep, &mut self.deep, lane);
+            put::<S>(rows.chord(innermost), &mut self.zones[0], lane);
+            put::<S>(rows.chord(inner), &mut self.zones[1], lane);
             if sphere.shadows {
                 let (inside, settled) = rows.arc(&sphere.light, 0.0, known);
                 put::<S>(inside, &mut self.facing.inside, lane);

@@ -20,11 +20,11 @@ use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
 /// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have
-/// a small s: those with s ≥ R/8, those with s ≥ R/16384, and the rest, which is left in doubt.
-pub(crate) const ZONES: usize = 2;
+/// a small s: those with s ≥ R/8, with s ≥ R/128, with s ≥ R/16384, and the rest, which is left in doubt.
+pub(crate) const ZONES: usize = 3;
 
 /// What R is divided by for the least s of each zone.
-const DEPTHS: [f64; ZONES] = [8.0, 16384.0];
+const DEPTHS: [f64; ZONES] = [8.0, 128.0, 16384.0];
 
 /// constant + across · q + off · m + out · s, and a bound on its error in f64 in any zone.
 #[derive(Clone, Copy)]

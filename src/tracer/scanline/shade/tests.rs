@@ -44,7 +44,7 @@ fn check(
             grid: frame.grid,
             y: frame.grid.place(row),
             from,
-            deep: chord.deep,
+            zones: chord.zones,
             bright: chord.bright,
             is_facing: !shaded.sphere.shadows,
             samples: &mut samples,

@@ -162,7 +162,7 @@ impl<'r> Row<'r> {
             grid: self.grid,
             y: self.y,
             from: columns.0,
-            deep: chord.deep,
+            zones: chord.zones,
             bright: chord.bright,
             is_facing,
             samples: &mut self.samples[3 * range.start..3 * range.end],
