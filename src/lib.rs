@@ -28,6 +28,7 @@
 //! | [`Stage`] | the seven stages, from a test image to the animation |
 //! | [`camera`] | α: its frames, its sine and cosine |
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
+//! | [`Render`] | whatever makes pictures of scenes: the tracer, or yours |
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another, in numbers and in false colours |
 //! | [`memory`] | which memory may be refused, for a program's allocator |
@@ -85,6 +86,7 @@ pub mod memory;
 mod number;
 #[cfg(test)]
 mod random;
+mod render;
 #[cfg(feature = "program")]
 pub mod report;
 pub mod scene;
@@ -98,6 +100,7 @@ pub mod tracer;
 pub mod viewer;
 
 pub use image::Image;
+pub use render::{Render, RenderError};
 pub use scene::Scene;
 pub use stage::Stage;
 pub use tracer::{Kernel, Tracer};
