@@ -18,7 +18,7 @@ use clap::{Args, Parser, Subcommand};
 use firsthit::difference::{HeatError, SizesDiffer};
 use firsthit::image::{ImageError, LoadError, SaveError};
 use firsthit::report::{PlotError, ReportError};
-use firsthit::scene::{BUILTIN_TOML, SceneError};
+use firsthit::scene::{BUILTIN_TOML, SceneFileError};
 use firsthit::screen::ScreenError;
 use firsthit::tracer::TraceError;
 use firsthit::viewer::ViewerError;
@@ -56,10 +56,8 @@ enum Command {
 pub(crate) enum Failure {
     #[error(transparent)]
     Usage(#[from] clap::Error),
-    #[error("{}: cannot be read: {reason}: give the path of a scene file", path.display())]
-    Unreadable { path: PathBuf, reason: io::Error },
-    #[error("{}: {reason}", path.display())]
-    Scene { path: PathBuf, reason: SceneError },
+    #[error(transparent)]
+    Scene(#[from] SceneFileError),
     #[error(transparent)]
     Image(#[from] ImageError),
     #[error(transparent)]

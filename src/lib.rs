@@ -24,7 +24,7 @@
 //!
 //! | place | what is there |
 //! | --- | --- |
-//! | [`scene`] | spheres, tetrahedra, the surface, the light; TOML in, refusals with line and field; what exact arithmetic decides once |
+//! | [`scene`] | spheres, tetrahedra, the surface, the light; made in code or read from TOML, refusals with line and field; what exact arithmetic decides once |
 //! | [`Stage`] | the seven stages, from a test image to the animation |
 //! | [`camera`] | α: its frames, its sine and cosine |
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |

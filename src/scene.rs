@@ -1,19 +1,25 @@
 //! What exists: solids, a surface, a light, one material.
 
+mod builder;
 mod casters;
+mod error;
 mod exact;
 mod file;
 mod hidden;
 mod hull;
 mod rational;
+mod rules;
 
+use std::path::Path;
 use std::sync::LazyLock;
 
 use glam::DVec3;
 
+pub use builder::SceneBuilder;
 pub(crate) use casters::SurfaceCasters;
+pub use error::{SceneError, SceneFileError};
 pub(crate) use exact::{Facts, Side, Support};
-pub use file::{MAX_SOLIDS, SceneError};
+pub use rules::MAX_SOLIDS;
 
 /// The built-in scene, as the TOML text that it is read from.
 pub const BUILTIN_TOML: &str = include_str!("scene/builtin.toml");
@@ -36,8 +42,6 @@ pub struct Tetrahedron {
     pub vertices: [DVec3; 4],
     /// Its colour c.
     pub color: DVec3,
-    /// Whether its edges 0→1, 0→2, 0→3 are right-handed, which exact arithmetic has decided.
-    pub right_handed: bool,
 }
 
 /// The glazed surface: the square y = `height`, |x| ≤ `half_width`, |z| ≤ `half_width`.
@@ -90,8 +94,7 @@ pub struct Material {
     pub exponent: u32,
 }
 
-/// A scene that keeps every rule of the file format: made by [`Scene::builtin`] or
-/// [`Scene::from_toml`] only.
+/// A scene that keeps every rule of the file format, wherever it comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     background: DVec3,
@@ -142,6 +145,33 @@ impl Scene {
     /// 000; more than [`MAX_SOLIDS`] solids.
     pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
         file::read(text, Some(&Scene::builtin()))
+    }
+
+    /// Reads the scene file `path`, as [`Scene::from_toml`] reads its text.
+    ///
+    /// # Errors
+    /// [`SceneFileError`] where the file cannot be read, or its scene is refused.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Scene, SceneFileError> {
+        file::load(path.as_ref(), &Scene::builtin())
+    }
+
+    /// A scene to be made in code: without solids and surface, and with the background, the light
+    /// and the material of the built-in scene, until they are given.
+    pub fn builder() -> SceneBuilder {
+        SceneBuilder::like(&Scene::builtin())
+    }
+
+    /// The scene as TOML that gives every field, in the order of the built-in scene's text; each
+    /// number is the shortest decimal that reads back as the same f64.
+    ///
+    /// ```
+    /// use firsthit::Scene;
+    /// let scene = Scene::builtin();
+    /// assert_eq!(Scene::from_toml(&scene.to_toml())?, scene);
+    /// # Ok::<(), firsthit::scene::SceneError>(())
+    /// ```
+    pub fn to_toml(&self) -> String {
+        file::write(self)
     }
 
     /// What is seen where nothing is hit.

@@ -2,7 +2,7 @@
 //! in one line.
 
 use firsthit::Scene;
-use firsthit::scene::BUILTIN_TOML;
+use firsthit::scene::{BUILTIN_TOML, Light, Material, Sphere, Surface, Tetrahedron};
 use glam::DVec3;
 
 const BALL: &str = "[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\ncolor = [1.0, 0.5, 0.0]\n";
@@ -87,7 +87,7 @@ fn what_is_refused_and_how() {
         let error = Scene::from_toml(&text).expect_err(&shown);
         assert_eq!(
             (error.line, error.field.as_deref()),
-            (line, field),
+            (Some(line), field),
             "{shown}\n{error}"
         );
         assert!(error.problem.contains(part), "{shown}\n{error}");
@@ -181,5 +181,191 @@ fn numbers_are_read_to_the_last_bit() {
     assert_eq!(
         Scene::from_toml(&text).unwrap().spheres()[0].radius,
         0.1f64.next_up()
+    );
+}
+
+/// A scene in code, made of what another one has.
+fn rebuilt(scene: &Scene) -> firsthit::scene::SceneBuilder {
+    let mut builder = Scene::builder()
+        .background(scene.background())
+        .light(*scene.light())
+        .material(*scene.material());
+    if let Some(surface) = scene.surface() {
+        builder = builder.surface(*surface);
+    }
+    for sphere in scene.spheres() {
+        builder = builder.sphere(*sphere);
+    }
+    for tetrahedron in scene.tetrahedra() {
+        builder = builder.tetrahedron(*tetrahedron);
+    }
+    builder
+}
+
+#[test]
+fn a_scene_made_in_code_and_one_written_as_toml_are_the_scene_that_they_were_made_of() {
+    let mut scenes = vec![Scene::builtin(), Scene::from_toml("").unwrap()];
+    for file in std::fs::read_dir("tests/scenes").unwrap() {
+        scenes.push(Scene::from_file(file.unwrap().path()).unwrap());
+    }
+    assert!(scenes.len() > 30);
+    for scene in scenes {
+        assert_eq!(rebuilt(&scene).build().unwrap(), scene);
+        let text = scene.to_toml();
+        assert_eq!(Scene::from_toml(&text).unwrap(), scene, "{text}");
+        // Whoever reads it needs to know of no default.
+        for field in ["background", "ambient_intensity", "exponent"] {
+            assert!(text.contains(field), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_made_in_code_is_refused_as_its_text_would_be() {
+    let scene = Scene::builtin();
+    let (sphere, tetrahedron) = (scene.spheres()[0], scene.tetrahedra()[0]);
+    let (surface, light, material) = (*scene.surface().unwrap(), *scene.light(), *scene.material());
+    let nan = DVec3::new(0.0, f64::NAN, 0.0);
+    let build = Scene::builder;
+    let mut flat = tetrahedron.vertices;
+    flat[3] = flat[0];
+    let cases = [
+        (build().background(nan), "background[1]"),
+        (
+            build().sphere(sphere).sphere(Sphere {
+                radius: -1.0,
+                ..sphere
+            }),
+            "sphere[1].radius",
+        ),
+        (
+            build().sphere(Sphere {
+                center: nan,
+                ..sphere
+            }),
+            "sphere[0].center[1]",
+        ),
+        (
+            build().sphere(Sphere {
+                color: -DVec3::X,
+                ..sphere
+            }),
+            "sphere[0].color[0]",
+        ),
+        (
+            build().tetrahedron(Tetrahedron {
+                vertices: flat,
+                ..tetrahedron
+            }),
+            "tetrahedron[0].vertices",
+        ),
+        (
+            build().tetrahedron(Tetrahedron {
+                vertices: [nan; 4],
+                ..tetrahedron
+            }),
+            "tetrahedron[0].vertices[0][1]",
+        ),
+        (
+            build().tetrahedron(Tetrahedron {
+                color: nan,
+                ..tetrahedron
+            }),
+            "tetrahedron[0].color[1]",
+        ),
+        (
+            build().surface(Surface {
+                half_width: 0.0,
+                ..surface
+            }),
+            "surface.half_width",
+        ),
+        (
+            build().surface(Surface {
+                height: 1e-40,
+                ..surface
+            }),
+            "surface.height",
+        ),
+        (
+            build().surface(Surface {
+                reflectance: f64::INFINITY,
+                ..surface
+            }),
+            "surface.reflectance",
+        ),
+        (
+            build().surface(Surface {
+                color: nan,
+                ..surface
+            }),
+            "surface.color[1]",
+        ),
+        (
+            build().light(Light {
+                direction: DVec3::ZERO,
+                ..light
+            }),
+            "light.direction",
+        ),
+        (
+            build().light(Light {
+                direction: nan,
+                ..light
+            }),
+            "light.direction",
+        ),
+        (
+            build().light(Light {
+                intensity: nan,
+                ..light
+            }),
+            "light.intensity[1]",
+        ),
+        (
+            build().light(Light {
+                ambient_intensity: nan,
+                ..light
+            }),
+            "light.ambient_intensity[1]",
+        ),
+        (
+            build().material(Material {
+                exponent: 0,
+                ..material
+            }),
+            "material.exponent",
+        ),
+        (
+            build().material(Material {
+                exponent: 1_000_001,
+                ..material
+            }),
+            "material.exponent",
+        ),
+        (
+            build().material(Material {
+                specular: nan,
+                ..material
+            }),
+            "material.specular[1]",
+        ),
+    ];
+    for (builder, field) in cases {
+        let error = builder.build().unwrap_err();
+        assert_eq!(
+            (error.line, error.field.as_deref()),
+            (None, Some(field)),
+            "{error}"
+        );
+        assert!(
+            error.to_string().starts_with(&format!("{field}: ")),
+            "{error}"
+        );
+    }
+    let crowd = (0..4097).fold(build(), |builder, _| builder.sphere(sphere));
+    assert_eq!(
+        crowd.build().unwrap_err().field.as_deref(),
+        Some("sphere[4096]")
     );
 }

@@ -1,7 +1,5 @@
 //! Arguments that commands share.
 
-use std::fs::File;
-use std::io::{self, Read};
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -50,31 +48,8 @@ impl PictureArguments {
 
 /// The scene in the file `path`.
 pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
-    let path = path.to_owned();
-    let _watchdog = Watchdog::for_input(&path);
-    match read(&path) {
-        Ok(text) => Scene::from_toml(&text).map_err(|reason| Failure::Scene { path, reason }),
-        Err(reason) => Err(Failure::Unreadable { path, reason }),
-    }
-}
-
-/// More than any scene of 4096 solids takes; without a limit, a device or a video given by mistake
-/// would be read until memory is full.
-const MAX_SCENE_BYTES: u64 = 1 << 26;
-
-fn read(path: &Path) -> io::Result<String> {
-    let mut bytes = Vec::new();
-    File::open(path)?
-        .take(MAX_SCENE_BYTES + 1)
-        .read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(io::ErrorKind::FileTooLarge.into());
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
-        io::Error::other(format!("line {line} is not UTF-8"))
-    })
+    let _watchdog = Watchdog::for_input(path);
+    Ok(Scene::from_file(path)?)
 }
 
 /// A stage by its number.

@@ -6,12 +6,10 @@
 //! itself: none is part of another. The random numbers and the arithmetic are the same on every
 //! machine.
 
-use std::fmt::Write as _;
-
 use glam::DVec3;
 
 use crate::Scene;
-use crate::scene::{MAX_SOLIDS, SceneError, Sphere, Tetrahedron};
+use crate::scene::{MAX_SOLIDS, SceneBuilder, SceneError, Sphere, Tetrahedron};
 
 /// The most spheres of a crowd: its tetrahedron is a solid too.
 pub const MAX_CROWD: u16 = MAX_SOLIDS as u16 - 1;
@@ -31,42 +29,20 @@ const LARGEST_RADIUS: f64 = 0.4;
 /// # Errors
 /// [`SceneError`] where they are more than [`MAX_CROWD`].
 pub(super) fn scene(spheres: u16) -> Result<Scene, SceneError> {
-    Scene::from_toml(&text(spheres))
-}
-
-/// The crowd's scene file.
-fn text(spheres: u16) -> String {
     let builtin = Scene::builtin();
-    let mut text = String::new();
+    let mut crowd = Scene::builder();
     let mut floor = -CYLINDER_TOP;
-    // Writing to a string cannot fail.
-    if let Some(surface) = builtin.surface() {
+    if let Some(&surface) = builtin.surface() {
         floor = surface.height;
-        let half_width = surface.half_width;
-        let _ = writeln!(
-            text,
-            "surface = {{ height = {floor:?}, half_width = {half_width:?} }}"
-        );
+        crowd = crowd.surface(surface);
     }
-    for Tetrahedron {
-        vertices, color, ..
-    } in builtin.tetrahedra()
-    {
-        let (vertices, color) = (vertices.map(|vertex| vertex.to_array()), color.to_array());
-        let _ = writeln!(
-            text,
-            "\n[[tetrahedron]]\nvertices = {vertices:?}\ncolor = {color:?}"
-        );
-    }
-    for sphere in place(spheres, floor, builtin.tetrahedra()) {
-        let (center, color) = (sphere.center.to_array(), sphere.color.to_array());
-        let radius = sphere.radius;
-        let _ = writeln!(
-            text,
-            "\n[[sphere]]\ncenter = {center:?}\nradius = {radius:?}\ncolor = {color:?}"
-        );
-    }
-    text
+    let solids = builtin.tetrahedra();
+    crowd = solids
+        .iter()
+        .copied()
+        .fold(crowd, SceneBuilder::tetrahedron);
+    let spheres = place(spheres, floor, solids).into_iter();
+    spheres.fold(crowd, SceneBuilder::sphere).build()
 }
 
 /// So many spheres above `floor` that touch neither each other nor the boxes around `tetrahedra`.
@@ -144,10 +120,11 @@ mod tests {
     #[test]
     fn a_crowd_is_the_same_on_every_machine() {
         // FNV-1a.
-        let checksum = text(200).bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        let text = scene(200).unwrap().to_toml();
+        let checksum = text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
-        assert_eq!(checksum, 0xa048_9550_ad79_a713, "{checksum:#x}");
+        assert_eq!(checksum, 0x877d_b4bc_933d_0e4c, "{checksum:#x}");
     }
 
     /// Points all over a tetrahedron, its vertices among them.

@@ -30,6 +30,8 @@ pub(crate) struct Support(u32);
 pub(crate) struct Facts {
     /// Each sphere's own surface.
     pub(crate) spheres: Vec<Support>,
+    /// Whether the edges 0→1, 0→2, 0→3 of each tetrahedron are right-handed.
+    pub(crate) right_handed: Vec<bool>,
     /// The plane of each face of each tetrahedron.
     pub(crate) faces: Vec<[Support; 4]>,
     /// The plane of the surface.
@@ -72,10 +74,10 @@ impl Side {
 }
 
 impl Facts {
-    /// `direction` is the way the light travels.
+    /// `right_handed` tells it of each tetrahedron; `direction` is the way the light travels.
     pub(super) fn new(
         spheres: &[Sphere],
-        tetrahedra: &[Tetrahedron],
+        (tetrahedra, right_handed): (&[Tetrahedron], Vec<bool>),
         surface: Option<&Surface>,
         direction: DVec3,
     ) -> Facts {
@@ -153,6 +155,7 @@ impl Facts {
         let casters = Casters::new(spheres, tetrahedra, -direction, &hidden, &facing_light);
         Facts {
             spheres: sphere_supports,
+            right_handed,
             faces,
             surface,
             facing_light,
@@ -214,7 +217,6 @@ mod tests {
         let solids = tetrahedra.map(|vertices| Tetrahedron {
             vertices,
             color: DVec3::ONE,
-            right_handed: orientation(vertices).is_gt(),
         });
         let surface = Surface {
             height: -0.5,
@@ -222,7 +224,9 @@ mod tests {
             color: DVec3::ONE,
             reflectance: 0.5,
         };
-        Facts::new(&[], &solids, Some(&surface), DVec3::new(0.0, -1.0, 0.0))
+        let right_handed = tetrahedra.map(|vertices| orientation(vertices).is_gt());
+        let solids = (&solids[..], right_handed.to_vec());
+        Facts::new(&[], solids, Some(&surface), DVec3::new(0.0, -1.0, 0.0))
     }
 
     #[test]

@@ -1,35 +1,50 @@
-//! Scene files: TOML in, a scene or a refusal with line and field out.
+//! Scene files: TOML in, a scene or a refusal with line and field out; a scene as TOML again.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::ops::Range;
+use std::path::Path;
 
 use glam::DVec3;
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::exact::{Facts, orientation};
+use super::builder::SceneBuilder;
+use super::error::{SceneError, SceneFileError};
+use super::rules::no_exponent;
 use super::{Light, Material, Scene, Sphere, Surface, Tetrahedron};
 
-/// The most solids that a scene can have.
-pub const MAX_SOLIDS: usize = 4096;
+/// More than any scene of 4096 solids takes; without a limit, a device or a video given by mistake
+/// would be read until memory is full.
+const MAX_BYTES: u64 = 1 << 26;
 
-/// The smallest and the largest magnitude of a number that is not 0.
-const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-30..=1e6;
-
-/// A scene file that is refused: where, and why.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {}{problem}", .field.as_ref().map(|field| format!("{field}: ")).unwrap_or_default())]
-pub struct SceneError {
-    /// The line, counted from 1.
-    pub line: usize,
-    /// The field, such as `sphere[1].radius` (counted from 0), where the problem lies in one.
-    pub field: Option<String>,
-    /// What is wrong and what would be right, in one line.
-    pub problem: String,
+/// The scene in the file `path`; what the file leaves out is taken from `standard`.
+pub(super) fn load(path: &Path, standard: &Scene) -> Result<Scene, SceneFileError> {
+    let path = path.to_owned();
+    match read_text(&path) {
+        Ok(text) => {
+            read(&text, Some(standard)).map_err(|reason| SceneFileError::Scene { path, reason })
+        }
+        Err(reason) => Err(SceneFileError::Read { path, reason }),
+    }
 }
 
-type Number = Spanned<f64>;
-type Triple = Exactly<3, Number>;
+fn read_text(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        io::Error::other(format!("line {} is not UTF-8", line_after(valid)))
+    })
+}
+
+type Triple = Exactly<3, f64>;
 
 /// As many values as that: serde's own arrays let a longer one pass.
 #[derive(Deserialize)]
@@ -48,9 +63,15 @@ impl<const N: usize, T> TryFrom<Vec<T>> for Exactly<N, T> {
     }
 }
 
+impl From<Triple> for DVec3 {
+    fn from(Exactly(values): Triple) -> DVec3 {
+        DVec3::from_array(values)
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct SceneTable {
     background: Option<Triple>,
     surface: Option<SurfaceTable>,
     #[serde(default)]
@@ -58,24 +79,24 @@ struct File {
     #[serde(default)]
     material: MaterialTable,
     #[serde(default)]
-    sphere: Vec<Spanned<SphereTable>>,
+    sphere: Vec<SphereTable>,
     #[serde(default)]
-    tetrahedron: Vec<Spanned<TetrahedronTable>>,
+    tetrahedron: Vec<TetrahedronTable>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SurfaceTable {
-    height: Number,
-    half_width: Number,
+    height: f64,
+    half_width: f64,
     color: Option<Triple>,
-    reflectance: Option<Number>,
+    reflectance: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 struct LightTable {
-    direction: Option<Spanned<Exactly<3, f64>>>,
+    direction: Option<Triple>,
     intensity: Option<Triple>,
     ambient_intensity: Option<Triple>,
 }
@@ -86,315 +107,166 @@ struct MaterialTable {
     ambient: Option<Triple>,
     diffuse: Option<Triple>,
     specular: Option<Triple>,
-    exponent: Option<Spanned<Value>>,
+    exponent: Option<Value>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SphereTable {
     center: Triple,
-    radius: Number,
+    radius: f64,
     color: Triple,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TetrahedronTable {
-    vertices: Spanned<Exactly<4, Triple>>,
+    vertices: Exactly<4, Triple>,
     color: Triple,
-}
-
-/// A problem and where in the text it is.
-struct Refusal {
-    span: Range<usize>,
-    problem: String,
-}
-
-impl Refusal {
-    fn new(span: Range<usize>, problem: impl Into<String>) -> Refusal {
-        Refusal {
-            span,
-            problem: problem.into(),
-        }
-    }
 }
 
 /// Reads a scene; what the text leaves out is taken from `standard`.
 pub(super) fn read(text: &str, standard: Option<&Scene>) -> Result<Scene, SceneError> {
-    let file = toml::from_str::<File>(text).map_err(|error| {
-        // The parser's messages have a second line with a hint; a refusal is one line.
-        let message = error.message().trim().replace('\n', "; ");
-        Refusal::new(error.span().unwrap_or(0..0), message)
-    });
-    file.and_then(|file| scene(file, standard))
-        .map_err(|refusal| locate(text, refusal))
-}
-
-fn scene(file: File, standard: Option<&Scene>) -> Result<Scene, Refusal> {
-    let spans = file
-        .sphere
-        .iter()
-        .map(Spanned::span)
-        .chain(file.tetrahedron.iter().map(Spanned::span));
-    if let Some(excess) = spans.clone().nth(MAX_SOLIDS) {
-        let problem = format!(
-            "{} solids are too many: leave at most {MAX_SOLIDS}",
-            spans.count()
-        );
-        return Err(Refusal::new(excess, problem));
-    }
-    let background = triple(
-        file.background,
-        standard.map(Scene::background),
-        "background",
-    )?;
-    let surface = file
-        .surface
-        .map(|table| surface(table, standard.and_then(Scene::surface)));
-    let light = light(file.light, standard.map(Scene::light))?;
-    let material = material(file.material, standard.map(Scene::material))?;
-    let spheres = file
-        .sphere
-        .into_iter()
-        .map(|table| sphere(table.into_inner()));
-    let tetrahedra = file
-        .tetrahedron
-        .into_iter()
-        .map(|table| tetrahedron(table.into_inner()));
-    let (surface, spheres) = (
-        surface.transpose()?,
-        spheres.collect::<Result<Vec<_>, _>>()?,
-    );
-    let tetrahedra = tetrahedra.collect::<Result<Vec<_>, _>>()?;
-    let facts = Facts::new(
-        &spheres,
-        &tetrahedra,
-        surface.as_ref(),
-        light.scaled_direction(),
-    );
-    Ok(Scene {
-        background,
-        surface,
-        light,
-        material,
-        spheres,
-        tetrahedra,
-        facts,
+    let table = toml::from_str::<SceneTable>(text).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        SceneError {
+            line: Some(line_at(text, span.start)),
+            // A text that does not parse has no fields.
+            field: DeTable::parse(text)
+                .ok()
+                .and_then(|table| field_at(table.get_ref(), &span)),
+            // The parser's messages have a second line with a hint; a refusal is one line.
+            problem: error.message().trim().replace('\n', "; "),
+        }
+    })?;
+    let scene = describe(table, standard).and_then(SceneBuilder::build);
+    scene.map_err(|error| {
+        let field = error.field.as_deref().unwrap_or_default();
+        let line = Some(line_at(text, start_of(text, field)));
+        SceneError { line, ..error }
     })
 }
 
-/// What is read where a field is given, else the standard; the built-in scene itself has none and
-/// gives every field.
-fn or_standard<G, T>(
-    given: Option<G>,
-    read: fn(G) -> Result<T, Refusal>,
-    standard: Option<T>,
-    field: &str,
-) -> Result<T, Refusal> {
-    match given {
-        Some(given) => read(given),
-        None => standard.ok_or_else(|| Refusal::new(0..0, format!("missing field `{field}`"))),
-    }
-}
-
-fn triple(given: Option<Triple>, standard: Option<DVec3>, field: &str) -> Result<DVec3, Refusal> {
-    or_standard(given, amounts, standard, field)
-}
-
-fn surface(table: SurfaceTable, standard: Option<&Surface>) -> Result<Surface, Refusal> {
-    Ok(Surface {
-        height: coordinate(table.height)?,
-        half_width: length(table.half_width)?,
-        color: triple(table.color, standard.map(|surface| surface.color), "color")?,
-        reflectance: or_standard(
-            table.reflectance,
-            amount,
-            standard.map(|s| s.reflectance),
-            "reflectance",
+fn describe(table: SceneTable, standard: Option<&Scene>) -> Result<SceneBuilder, SceneError> {
+    let (light, material) = (standard.map(Scene::light), standard.map(Scene::material));
+    let surface = standard.and_then(Scene::surface);
+    Ok(SceneBuilder {
+        background: or(
+            table.background,
+            standard.map(Scene::background),
+            "background",
         )?,
+        light: Light {
+            direction: or(
+                table.light.direction,
+                light.map(|light| light.direction),
+                "light.direction",
+            )?,
+            intensity: or(
+                table.light.intensity,
+                light.map(|light| light.intensity),
+                "light.intensity",
+            )?,
+            ambient_intensity: or(
+                table.light.ambient_intensity,
+                light.map(|light| light.ambient_intensity),
+                "light.ambient_intensity",
+            )?,
+        },
+        material: Material {
+            ambient: or(
+                table.material.ambient,
+                material.map(|material| material.ambient),
+                "material.ambient",
+            )?,
+            diffuse: or(
+                table.material.diffuse,
+                material.map(|material| material.diffuse),
+                "material.diffuse",
+            )?,
+            specular: or(
+                table.material.specular,
+                material.map(|material| material.specular),
+                "material.specular",
+            )?,
+            exponent: or(
+                table.material.exponent.map(whole).transpose()?,
+                material.map(|material| material.exponent),
+                "material.exponent",
+            )?,
+        },
+        surface: match table.surface {
+            Some(given) => Some(Surface {
+                height: given.height,
+                half_width: given.half_width,
+                color: or(
+                    given.color,
+                    surface.map(|surface| surface.color),
+                    "surface.color",
+                )?,
+                reflectance: or(
+                    given.reflectance,
+                    surface.map(|surface| surface.reflectance),
+                    "surface.reflectance",
+                )?,
+            }),
+            None => None,
+        },
+        spheres: table.sphere.into_iter().map(Sphere::from).collect(),
+        tetrahedra: table
+            .tetrahedron
+            .into_iter()
+            .map(Tetrahedron::from)
+            .collect(),
     })
 }
 
-fn light(table: LightTable, standard: Option<&Light>) -> Result<Light, Refusal> {
-    let ambient = standard.map(|light| light.ambient_intensity);
-    Ok(Light {
-        direction: or_standard(
-            table.direction,
-            direction,
-            standard.map(|l| l.direction),
-            "direction",
-        )?,
-        intensity: triple(
-            table.intensity,
-            standard.map(|light| light.intensity),
-            "intensity",
-        )?,
-        ambient_intensity: triple(table.ambient_intensity, ambient, "ambient_intensity")?,
-    })
+/// What is given, else the standard; the built-in scene itself has none and gives every field.
+fn or<T>(given: Option<impl Into<T>>, standard: Option<T>, field: &str) -> Result<T, SceneError> {
+    given
+        .map(Into::into)
+        .or(standard)
+        .ok_or_else(|| SceneError {
+            line: None,
+            field: Some(field.to_owned()),
+            problem: "missing".to_owned(),
+        })
 }
 
-fn material(table: MaterialTable, standard: Option<&Material>) -> Result<Material, Refusal> {
-    Ok(Material {
-        ambient: triple(
-            table.ambient,
-            standard.map(|material| material.ambient),
-            "ambient",
-        )?,
-        diffuse: triple(
-            table.diffuse,
-            standard.map(|material| material.diffuse),
-            "diffuse",
-        )?,
-        specular: triple(
-            table.specular,
-            standard.map(|material| material.specular),
-            "specular",
-        )?,
-        exponent: or_standard(
-            table.exponent,
-            exponent,
-            standard.map(|m| m.exponent),
-            "exponent",
-        )?,
-    })
-}
-
-fn sphere(table: SphereTable) -> Result<Sphere, Refusal> {
-    Ok(Sphere {
-        center: point(table.center)?,
-        radius: length(table.radius)?,
-        color: amounts(table.color)?,
-    })
-}
-
-fn tetrahedron(table: TetrahedronTable) -> Result<Tetrahedron, Refusal> {
-    let span = table.vertices.span();
-    let mut vertices = [DVec3::ZERO; 4];
-    for (vertex, triple) in vertices.iter_mut().zip(table.vertices.into_inner().0) {
-        *vertex = point(triple)?;
-    }
-    let color = amounts(table.color)?;
-    let orientation = orientation(vertices);
-    if orientation.is_eq() {
-        return Err(Refusal::new(
-            span,
-            "the tetrahedron is flat: move a vertex out of the plane of the others",
-        ));
-    }
-    Ok(Tetrahedron {
-        vertices,
-        color,
-        right_handed: orientation.is_gt(),
-    })
-}
-
-/// Each number of a triple, read by `one`. A −0 becomes +0.
-fn each(triple: Triple, one: fn(Number) -> Result<f64, Refusal>) -> Result<DVec3, Refusal> {
-    let Exactly([x, y, z]) = triple;
-    Ok(DVec3::new(one(x)?, one(y)?, one(z)?))
-}
-
-fn point(triple: Triple) -> Result<DVec3, Refusal> {
-    each(triple, coordinate)
-}
-
-fn amounts(triple: Triple) -> Result<DVec3, Refusal> {
-    each(triple, amount)
-}
-
-fn coordinate(number: Number) -> Result<f64, Refusal> {
-    let (span, value) = (number.span(), number.into_inner());
-    if value != 0.0 && !MAGNITUDES.contains(&value.abs()) {
-        return Err(Refusal::new(
-            span,
-            format!("{value:?} is out of range: a coordinate is 0 or of magnitude 1e-30 to 1e6"),
-        ));
-    }
-    Ok(value + 0.0)
-}
-
-fn length(number: Number) -> Result<f64, Refusal> {
-    let (span, value) = (number.span(), number.into_inner());
-    if !MAGNITUDES.contains(&value) {
-        return Err(Refusal::new(
-            span,
-            format!("{value:?} is out of range: a length is from 1e-30 to 1e6"),
-        ));
-    }
-    Ok(value)
-}
-
-/// A colour's, intensity's or coefficient's number.
-fn amount(number: Number) -> Result<f64, Refusal> {
-    let (span, value) = (number.span(), number.into_inner());
-    if value != 0.0 && !MAGNITUDES.contains(&value) {
-        return Err(Refusal::new(
-            span,
-            format!("{value:?} is out of range: it must be 0 or from 1e-30 to 1e6"),
-        ));
-    }
-    Ok(value + 0.0)
-}
-
-fn direction(given: Spanned<Exactly<3, f64>>) -> Result<DVec3, Refusal> {
-    let (span, values) = (given.span(), given.into_inner().0);
-    let magnitudes = values
-        .map(f64::abs)
-        .into_iter()
-        .filter(|&magnitude| magnitude != 0.0);
-    if let Some(bad) = values.into_iter().find(|value| !value.is_finite()) {
-        return Err(Refusal::new(
-            span,
-            format!("{bad:?} is not a direction's component: give finite numbers"),
-        ));
-    }
-    let (smallest, largest) =
-        magnitudes.fold((f64::INFINITY, 0.0), |(s, l), m| (m.min(s), m.max(l)));
-    if largest == 0.0 {
-        return Err(Refusal::new(
-            span,
-            "light of direction 0 goes nowhere: give at least one component that is not 0",
-        ));
-    }
-    if largest / smallest > 1e30 {
-        return Err(Refusal::new(
-            span,
-            "the components that are not 0 differ by more than a factor 1e30: make one of them 0",
-        ));
-    }
-    Ok(DVec3::from_array(values.map(|value| value + 0.0)))
-}
-
-fn exponent(given: Spanned<Value>) -> Result<u32, Refusal> {
-    let (span, value) = (given.span(), given.into_inner());
-    match value
-        .as_integer()
+/// An exponent as it is written: 1000.0 is not a whole number.
+fn whole(given: Value) -> Result<u32, SceneError> {
+    let whole = given.as_integer();
+    whole
         .and_then(|whole| u32::try_from(whole).ok())
-    {
-        Some(exponent @ 1..=1_000_000) => Ok(exponent),
-        _ => Err(Refusal::new(
-            span,
-            format!("{value} is not an exponent: give a whole number from 1 to 1000000"),
-        )),
+        .ok_or_else(|| no_exponent(given))
+}
+
+impl From<SphereTable> for Sphere {
+    fn from(table: SphereTable) -> Sphere {
+        Sphere {
+            center: table.center.into(),
+            radius: table.radius,
+            color: table.color.into(),
+        }
     }
 }
 
-/// The line of a refusal, and the innermost field that holds all of its place.
-fn locate(text: &str, refusal: Refusal) -> SceneError {
-    let start = refusal.span.start.min(text.len());
-    let line = 1 + text.as_bytes()[..start]
-        .iter()
-        .filter(|&&byte| byte == b'\n')
-        .count();
-    // A text that does not parse has no fields.
-    let field = DeTable::parse(text)
-        .ok()
-        .and_then(|table| field_at(table.get_ref(), &refusal.span));
-    SceneError {
-        line,
-        field,
-        problem: refusal.problem,
+impl From<TetrahedronTable> for Tetrahedron {
+    fn from(table: TetrahedronTable) -> Tetrahedron {
+        Tetrahedron {
+            vertices: table.vertices.0.map(DVec3::from),
+            color: table.color.into(),
+        }
     }
+}
+
+/// The number of the line in which this byte of the text is.
+fn line_at(text: &str, byte: usize) -> usize {
+    line_after(&text.as_bytes()[..byte.min(text.len())])
+}
+
+fn line_after(bytes: &[u8]) -> usize {
+    1 + bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
 
 /// The path to the innermost entry of `table` whose key or value holds `span`.
@@ -423,4 +295,68 @@ fn inside(value: &Spanned<DeValue<'_>>, span: &Range<usize>) -> Option<String> {
         }),
         _ => None,
     }
+}
+
+/// Where in the text the value of a field starts, or what holds it does.
+fn start_of(text: &str, field: &str) -> usize {
+    let Ok(table) = DeTable::parse(text) else {
+        return 0;
+    };
+    let mut names = field.split(['.', '[', ']']).filter(|name| !name.is_empty());
+    let mut value = names.next().and_then(|name| table.get_ref().get(name));
+    let mut start = 0;
+    while let Some(holder) = value {
+        start = holder.span().start;
+        value = names.next().and_then(|name| match holder.get_ref() {
+            DeValue::Table(table) => table.get(name),
+            DeValue::Array(array) => array.get(name.parse::<usize>().ok()?),
+            _ => None,
+        });
+    }
+    start
+}
+
+/// The scene as the text of a scene file that gives every field; each number is the shortest
+/// decimal that reads back as the same f64.
+pub(super) fn write(scene: &Scene) -> String {
+    let three = |vector: DVec3| format!("{:?}", vector.to_array());
+    let mut lines = vec![format!("background = {}", three(scene.background))];
+    if let Some(surface) = scene.surface {
+        lines.extend([
+            "\n[surface]".to_owned(),
+            format!("height = {:?}", surface.height),
+            format!("half_width = {:?}", surface.half_width),
+            format!("color = {}", three(surface.color)),
+            format!("reflectance = {:?}", surface.reflectance),
+        ]);
+    }
+    let (light, material) = (scene.light, scene.material);
+    lines.extend([
+        "\n[light]".to_owned(),
+        format!("direction = {}", three(light.direction)),
+        format!("intensity = {}", three(light.intensity)),
+        format!("ambient_intensity = {}", three(light.ambient_intensity)),
+        "\n[material]".to_owned(),
+        format!("ambient = {}", three(material.ambient)),
+        format!("diffuse = {}", three(material.diffuse)),
+        format!("specular = {}", three(material.specular)),
+        format!("exponent = {}", material.exponent),
+    ]);
+    for sphere in &scene.spheres {
+        lines.extend([
+            "\n[[sphere]]".to_owned(),
+            format!("center = {}", three(sphere.center)),
+            format!("radius = {:?}", sphere.radius),
+            format!("color = {}", three(sphere.color)),
+        ]);
+    }
+    for tetrahedron in &scene.tetrahedra {
+        let vertices = tetrahedron.vertices.map(three).join(", ");
+        lines.extend([
+            "\n[[tetrahedron]]".to_owned(),
+            format!("vertices = [{vertices}]"),
+            format!("color = {}", three(tetrahedron.color)),
+        ]);
+    }
+    lines.join("\n") + "\n"
 }

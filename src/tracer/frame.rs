@@ -82,7 +82,7 @@ impl<R: Real> Frame<R> {
             .vertices
             .map(|vertex| reflect(self.place(vertex), mirror));
         // A reflection turns a right hand into a left one.
-        let right_handed = tetrahedron.right_handed != mirror.is_some();
+        let right_handed = facts.right_handed[index] != mirror.is_some();
         Tetrahedron::new(
             vertices,
             right_handed,

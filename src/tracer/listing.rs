@@ -97,7 +97,8 @@ impl<'a> Listing<'a> {
             spheres: [sphere1, sphere2],
             t: tetrahedron::FACES.map(|[a, b, c]| {
                 // Counter-clockwise from outside, as Equation 3-3 needs it.
-                let (b, c) = if t.right_handed { (b, c) } else { (c, b) };
+                let right_handed = scene.facts().right_handed.first() == Some(&true);
+                let (b, c) = if right_handed { (b, c) } else { (c, b) };
                 Triangle::new(t.vertices[a], t.vertices[b], t.vertices[c])
             }),
             t_color: t.color,
