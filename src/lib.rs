@@ -31,6 +31,7 @@
 //! | [`Render`] | whatever makes pictures of scenes: the tracer, or yours |
 //! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another, in numbers and in false colours |
+//! | [`diagnosis`] | what is wrong with a picture: which decisions, and why perhaps |
 //! | [`memory`] | which memory may be refused, for a program's allocator |
 #![cfg_attr(
     feature = "screen",
@@ -78,6 +79,7 @@
 //!   that it can touch, and a grid in the picture of each direction is a complete index.
 
 pub mod camera;
+pub mod diagnosis;
 pub mod difference;
 #[cfg(feature = "screen")]
 pub mod fault;

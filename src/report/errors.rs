@@ -1,46 +1,9 @@
 //! What a kernel gets wrong: decisions as decisions, samples as samples.
 
 use crate::Image;
+use crate::diagnosis::WrongPixels;
 use crate::difference::Difference;
-use crate::tracer::{Decision, InDoubt, Seen};
-
-/// Pixels with a wrong decision, each counted once: by the first thing that is wrong about it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct WrongPixels {
-    /// Something else is seen: another solid, the surface, the background.
-    pub(super) solid: u64,
-    /// The right tetrahedron, but another of its faces.
-    pub(super) face: u64,
-    /// The right thing, but in shadow instead of in light, or the other way round.
-    pub(super) shadow: u64,
-    /// The surface in light, but it mirrors something else, or the same otherwise lit.
-    pub(super) mirror: u64,
-}
-
-impl WrongPixels {
-    /// All of them.
-    pub(super) fn total(&self) -> u64 {
-        self.solid + self.face + self.shadow + self.mirror
-    }
-
-    /// Counts a pixel, if `decision` is wrong.
-    pub(super) fn add(&mut self, decision: Decision, truth: Decision) {
-        use Decision::{Mirrored, Solid, Surface, SurfaceInShadow};
-        match (decision, truth) {
-            _ if decision == truth => {}
-            (Solid(seen), Solid(truth)) => match (seen, truth) {
-                (Seen { solid, .. }, truth) if solid != truth.solid => self.solid += 1,
-                (Seen { face, .. }, truth) if face != truth.face => self.face += 1,
-                _ => self.shadow += 1,
-            },
-            (SurfaceInShadow, Surface | Mirrored(_)) | (Surface | Mirrored(_), SurfaceInShadow) => {
-                self.shadow += 1;
-            }
-            (Surface | Mirrored(_), Surface | Mirrored(_)) => self.mirror += 1,
-            _ => self.solid += 1,
-        }
-    }
-}
+use crate::tracer::{Decision, InDoubt};
 
 /// What a kernel gets wrong over some frames, and how many pixels were in doubt on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,72 +48,6 @@ impl Errors {
 #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 mod tests {
     use super::*;
-
-    const SPHERE: Seen = Seen {
-        solid: 0,
-        face: None,
-        in_shadow: false,
-    };
-    const FACE: Seen = Seen {
-        solid: 2,
-        face: Some(1),
-        in_shadow: false,
-    };
-
-    #[test]
-    fn a_wrong_pixel_is_counted_by_the_first_thing_that_is_wrong() {
-        use Decision::{Background, Mirrored, Quadrant, Solid, Surface, SurfaceInShadow};
-        let dark = |seen| Seen {
-            in_shadow: true,
-            ..seen
-        };
-        let face = |face| Seen {
-            face: Some(face),
-            ..FACE
-        };
-        let kinds = [
-            // Right: not counted.
-            (Solid(FACE), Solid(FACE), [0, 0, 0, 0]),
-            (Mirrored(SPHERE), Mirrored(SPHERE), [0, 0, 0, 0]),
-            // Another thing, whatever else is wrong with it.
-            (Background, Solid(SPHERE), [1, 0, 0, 0]),
-            (Solid(dark(FACE)), Solid(SPHERE), [1, 0, 0, 0]),
-            (Surface, Solid(SPHERE), [1, 0, 0, 0]),
-            (Mirrored(SPHERE), Solid(SPHERE), [1, 0, 0, 0]),
-            (Background, SurfaceInShadow, [1, 0, 0, 0]),
-            (Quadrant(0), Quadrant(1), [1, 0, 0, 0]),
-            // Another face, in shadow or not.
-            (Solid(face(3)), Solid(FACE), [0, 1, 0, 0]),
-            (Solid(dark(face(3))), Solid(FACE), [0, 1, 0, 0]),
-            // Shadows, on solids and on the surface.
-            (Solid(dark(FACE)), Solid(FACE), [0, 0, 1, 0]),
-            (SurfaceInShadow, Surface, [0, 0, 1, 0]),
-            (Mirrored(SPHERE), SurfaceInShadow, [0, 0, 1, 0]),
-            // What the surface mirrors.
-            (Surface, Mirrored(SPHERE), [0, 0, 0, 1]),
-            (Mirrored(FACE), Mirrored(SPHERE), [0, 0, 0, 1]),
-            (Mirrored(face(0)), Mirrored(FACE), [0, 0, 0, 1]),
-            (Mirrored(dark(SPHERE)), Mirrored(SPHERE), [0, 0, 0, 1]),
-        ];
-        for (decision, truth, expected) in kinds {
-            for (decision, truth) in [(decision, truth), (truth, decision)] {
-                let mut wrong = WrongPixels::default();
-                wrong.add(decision, truth);
-                let WrongPixels {
-                    solid,
-                    face,
-                    shadow,
-                    mirror,
-                } = wrong;
-                assert_eq!(
-                    [solid, face, shadow, mirror],
-                    expected,
-                    "{decision:?} for {truth:?}"
-                );
-                assert_eq!(wrong.total(), expected.iter().sum::<u64>());
-            }
-        }
-    }
 
     #[test]
     fn known_errors_are_counted_as_they_are() {
