@@ -1,5 +1,253 @@
-//! What is wrong with a picture, pixel by pixel.
+//! What is wrong with a picture that somebody else has made of a scene.
+//!
+//! A pixel that is not right shows *something*: mostly what another decision would give there, such
+//! as the surface in shadow where it is lit. The tracer knows the colour of every decision that can
+//! be taken, so each wrong pixel gets a [`Verdict`], and they are counted by kind.
+//!
+//! ```
+//! use firsthit::diagnosis::{Examination, TOLERANCE, Verdict};
+//! use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+//!
+//! let scene = Scene::builtin();
+//! let mut image = Image::new(64)?;
+//! Tracer::new(Kernel::Exact, 1)?.trace(&scene, Stage::Shadow, 0.0, &mut image)?;
+//! // The corner shows the background; somebody's tracer shows the surface there, in shadow.
+//! image.samples_mut()[..3].fill(0.3);
+//!
+//! let examination = Examination::new(&scene, Stage::Shadow, 0.0, &image, TOLERANCE, 1)?;
+//! let diagnosis = examination.diagnosis()?;
+//! assert_eq!(diagnosis.summary.wrong_decisions.solid, 1);
+//! let pixel = examination.pixel(0, 0).expect("a pixel of the picture");
+//! assert_eq!(pixel.words, "shows the surface in shadow, where the background is seen");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod fits;
+mod pixel;
+mod verdict;
+mod words;
 mod wrong_decision;
 
+use crate::image::ImageError;
+use crate::tracer::{Colors, Decision, TraceError, with_colors};
+use crate::{Image, Kernel, Scene, Stage, Tracer, memory};
+use fits::{Candidates, is_within};
+pub use pixel::PixelDiagnosis;
+pub use verdict::{Summary, Verdict};
+use words::Words;
 pub use wrong_decision::{WrongDecision, WrongPixels};
+
+/// How far a sample may be from the one that a decision gives, if nobody says otherwise: as far as
+/// a byte of a display is from the next.
+pub const TOLERANCE: f32 = 1.0 / 255.0;
+
+/// Why there is no truth to compare a picture with.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExaminationError {
+    /// The true picture cannot be traced.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// There is no memory for it.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+}
+
+/// A picture that somebody has made, and the truth beside it.
+pub struct Examination<'a> {
+    scene: &'a Scene,
+    stage: Stage,
+    alpha: f64,
+    image: &'a Image,
+    tolerance: f32,
+    truth: Image,
+    decisions: Vec<Decision>,
+}
+
+/// The verdicts on all pixels of a picture.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// N² verdicts, rows from the bottom.
+    pub verdicts: Vec<Verdict>,
+    /// How many there are of each kind.
+    pub summary: Summary,
+}
+
+impl<'a> Examination<'a> {
+    /// Traces the truth: `scene` in `stage`, seen at angle `alpha` in radians, with `threads`
+    /// threads, 0 being one a core. Samples of `image` that are at most `tolerance` from those that
+    /// a decision gives are taken for them, [`TOLERANCE`] mostly.
+    ///
+    /// # Errors
+    /// [`ExaminationError::Trace`] where `alpha` is not finite or there are no threads,
+    /// [`ExaminationError::Image`] where there is no memory for another picture.
+    pub fn new(
+        scene: &'a Scene,
+        stage: Stage,
+        alpha: f64,
+        image: &'a Image,
+        tolerance: f32,
+        threads: usize,
+    ) -> Result<Examination<'a>, ExaminationError> {
+        let mut truth = Image::new(image.size())?;
+        let mut tracer = Tracer::new(Kernel::Exact, threads)?;
+        let decisions = tracer.trace_with_decisions(scene, stage, alpha, &mut truth)?;
+        Ok(Examination {
+            scene,
+            stage,
+            alpha,
+            image,
+            tolerance,
+            truth,
+            decisions,
+        })
+    }
+
+    /// The true picture.
+    pub fn truth(&self) -> &Image {
+        &self.truth
+    }
+
+    /// The true decisions: N² of them, rows from the bottom.
+    pub fn decisions(&self) -> &[Decision] {
+        &self.decisions
+    }
+
+    /// The verdicts on all pixels.
+    ///
+    /// # Errors
+    /// [`ImageError::Memory`] where there is no memory for them.
+    pub fn diagnosis(&self) -> Result<Diagnosis, ImageError> {
+        let size = self.image.size();
+        let mut verdicts = Vec::new();
+        memory::reserve(&mut verdicts, self.decisions.len())
+            .map_err(|_| ImageError::Memory(size))?;
+        let mut summary = Summary::default();
+        let mut largest = 0.0;
+        self.with_candidates(|candidates| {
+            let pixels = (0..size).flat_map(|row| (0..size).map(move |column| (column, row)));
+            for (index, pixel) in pixels.enumerate() {
+                let compared = self.compared(index);
+                let verdict = compared.verdict(pixel, candidates);
+                let error = compared.error();
+                if verdict != Verdict::Right && (summary.worst.is_none() || error > largest) {
+                    summary.worst = Some(pixel);
+                    largest = error;
+                }
+                summary.add(verdict, compared.truth);
+                verdicts.push(verdict);
+            }
+        });
+        Ok(Diagnosis { verdicts, summary })
+    }
+
+    /// One pixel, with all decisions that explain it; `None` outside of the picture.
+    pub fn pixel(&self, column: u32, row: u32) -> Option<PixelDiagnosis> {
+        let samples = self.image.pixel(column, row)?;
+        let compared = self.compared(row as usize * self.image.size() as usize + column as usize);
+        let (pixel, truth) = ((column, row), compared.truth);
+        let (verdict, explanations) = self.with_candidates(|candidates| {
+            let verdict = compared.verdict(pixel, candidates);
+            let explanations = match verdict {
+                Verdict::Shows(_) | Verdict::Several => {
+                    candidates.fitting(pixel, samples, truth, usize::MAX)
+                }
+                _ => Vec::new(),
+            };
+            (verdict, explanations)
+        });
+        let words = self.words(verdict, &explanations, truth);
+        Some(PixelDiagnosis {
+            samples,
+            true_samples: compared.true_samples,
+            true_decision: truth,
+            verdict,
+            explanations,
+            words,
+        })
+    }
+
+    fn words(&self, verdict: Verdict, explanations: &[Decision], truth: Decision) -> String {
+        let words = Words {
+            scene: self.scene,
+            stage: self.stage,
+        };
+        let within = if self.tolerance.to_bits() == TOLERANCE.to_bits() {
+            "within 1/255".to_owned()
+        } else {
+            format!("within {}", self.tolerance)
+        };
+        match verdict {
+            Verdict::Right => "is right, bit for bit".to_owned(),
+            Verdict::Rounding => format!("is right but for rounding: {within}"),
+            Verdict::Shows(decision) => words.shown(decision, truth),
+            Verdict::Several => format!(
+                "is {within} of what {} decisions give: {}",
+                explanations.len(),
+                words.list(explanations)
+            ),
+            Verdict::AnotherColor => {
+                format!("is another colour: what no decision gives {within}")
+            }
+            Verdict::NotANumber => "is not a number".to_owned(),
+        }
+    }
+
+    fn with_candidates<T>(&self, work: impl FnOnce(&Candidates<'_, '_>) -> T) -> T {
+        let frame = (self.scene, self.stage, self.alpha, self.image.size());
+        with_colors(frame, |colors: &Colors<'_>| {
+            work(&Candidates::new(colors, self.tolerance))
+        })
+    }
+
+    /// The pixel of this number, rows from the bottom.
+    fn compared(&self, index: usize) -> Compared {
+        let at = |image: &Image| [0, 1, 2].map(|channel| image.samples()[3 * index + channel]);
+        Compared {
+            samples: at(self.image),
+            true_samples: at(&self.truth),
+            truth: self.decisions[index],
+            tolerance: self.tolerance,
+        }
+    }
+}
+
+/// A pixel and the true one.
+struct Compared {
+    samples: [f32; 3],
+    true_samples: [f32; 3],
+    truth: Decision,
+    tolerance: f32,
+}
+
+impl Compared {
+    fn verdict(&self, pixel: (u32, u32), candidates: &Candidates<'_, '_>) -> Verdict {
+        if self.samples.map(f32::to_bits) == self.true_samples.map(f32::to_bits) {
+            return Verdict::Right;
+        }
+        if self.samples.iter().any(|sample| sample.is_nan()) {
+            return Verdict::NotANumber;
+        }
+        if is_within(self.tolerance, self.samples, self.true_samples) {
+            return Verdict::Rounding;
+        }
+        match candidates.fitting(pixel, self.samples, self.truth, 2)[..] {
+            [] => Verdict::AnotherColor,
+            [decision] => Verdict::Shows(decision),
+            _ => Verdict::Several,
+        }
+    }
+
+    /// The largest absolute error of a sample; infinite where one is a NaN, or infinite itself.
+    fn error(&self) -> f64 {
+        let errors = [0, 1, 2].map(|channel| {
+            let error = f64::from(self.samples[channel]) - f64::from(self.true_samples[channel]);
+            if error.is_nan() {
+                f64::INFINITY
+            } else {
+                error.abs()
+            }
+        });
+        errors.into_iter().fold(0.0, f64::max)
+    }
+}

@@ -14,9 +14,11 @@
 //! - `scanline`: whole rows of pixels at once, which makes nearly all of them;
 //! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
-//! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words.
+//! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words;
+//!   `colors`: what other decisions would look like.
 
 mod arena;
+mod colors;
 mod decision;
 mod error;
 mod explain;
@@ -51,8 +53,10 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::{Image, Scene, Stage};
 use arena::Arena;
+pub(crate) use colors::{Colors, with_colors};
 pub use decision::{Decision, Seen};
 pub use error::TraceError;
+pub(crate) use explain::{name, say};
 use frame_work::{FrameWork, with_frame};
 pub use in_doubt::InDoubt;
 pub use kernel::Kernel;

@@ -19,6 +19,7 @@ mod commit;
 #[cfg(feature = "program")]
 mod compare;
 mod crowds;
+mod diagnosis;
 mod doubt;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod drivers;

@@ -56,7 +56,7 @@ impl fmt::Display for Triple {
 }
 
 /// A line of the text: what it is about, and what there is to say.
-fn say(text: &mut String, about: &str, what: impl fmt::Display) {
+pub(crate) fn say(text: &mut String, about: &str, what: impl fmt::Display) {
     let _ = writeln!(text, "{about:<12} {what}");
 }
 
@@ -400,7 +400,7 @@ impl<R: Real> Picture<'_, R> {
 }
 
 /// A solid as a person would call it, counted from 1 as in the document.
-fn name(scene: &Scene, solid: usize, face: Option<u8>) -> String {
+pub(crate) fn name(scene: &Scene, solid: usize, face: Option<u8>) -> String {
     let spheres = scene.spheres().len();
     match face {
         _ if solid < spheres => format!("sphere {}", solid + 1),

@@ -238,6 +238,12 @@ impl<'f> Ladder<'f> {
         (answer, Rung::Arbitrary)
     }
 
+    /// The samples of a pixel if it shows a sphere in the light, as `decision` says; `None` where it
+    /// cannot.
+    pub(super) fn color_if(&self, decision: Decision, column: u32, row: u32) -> Option<[f32; 3]> {
+        self.settle(&ColorIf(decision, column, row)).0
+    }
+
     fn desks(&self) -> MutexGuard<'_, Vec<Desk<'f>>> {
         // Nothing happens under the lock that could fail halfway.
         self.desks.lock().unwrap_or_else(PoisonError::into_inner)
@@ -280,6 +286,16 @@ impl Question for ColorOf {
     type Answer = [f32; 3];
     fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<[f32; 3], R::Doubt> {
         picture.color(self.0, None)
+    }
+}
+
+/// The samples of the pixel at a column and a row if it shows a sphere in the light.
+struct ColorIf(Decision, u32, u32);
+
+impl Question for ColorIf {
+    type Answer = Option<[f32; 3]>;
+    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
+        picture.color_if(self.0, self.1, self.2)
     }
 }
 

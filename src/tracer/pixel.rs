@@ -107,6 +107,32 @@ impl<'f, R: Real> Picture<'f, R> {
         }
     }
 
+    /// The samples of the pixel if it shows a sphere in the light, as `decision` says, whatever
+    /// hides that; `None` where its line misses the sphere or, in the stages with shadows, the
+    /// sphere is turned away from the light.
+    pub(super) fn color_if(
+        &self,
+        decision: Decision,
+        column: u32,
+        row: u32,
+    ) -> Result<Option<[f32; 3]>, R::Doubt> {
+        let mirror = self.floor.as_ref().and_then(|floor| floor.mirror.as_ref());
+        let (view, seen) = match (decision, mirror) {
+            (Decision::Solid(seen), _) => (&self.view, seen),
+            // The eye's ray goes on straight into the reflected scene.
+            (Decision::Mirrored(seen), Some(mirror)) => (&mirror.view, seen),
+            _ => return Ok(None),
+        };
+        let ray = self.eye_ray(column, row);
+        let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, Solids::All)? else {
+            return Ok(None);
+        };
+        if self.stage >= Stage::Shadow && view.shading.facing_light(&hit.normal)?.is_le() {
+            return Ok(None);
+        }
+        self.color(decision, Some(&hit.normal)).map(Some)
+    }
+
     /// The samples of what was decided: where `normal` is `None`, of all pixels that show it.
     pub(super) fn color(
         &self,

@@ -266,7 +266,7 @@ impl<'f, R: Real> View<'f, R> {
     }
 
     /// Where a ray meets a solid, if that takes part: anywhere on its line, or only `ahead`.
-    fn hit(
+    pub(super) fn hit(
         &self,
         solid: usize,
         ray: &Line<R>,

@@ -1,0 +1,154 @@
+//! The colours that the decisions of a frame give, whether a pixel takes them or not.
+
+use super::arena::Arena;
+use super::decision::{Decision, Seen};
+use super::ladder::{Ladder, Lines, Rung};
+use super::pixel::Floor;
+use crate::number::Bounded;
+use crate::scene::Scene;
+use crate::stage::Stage;
+
+/// What every decision that a stage knows looks like in a frame, in exact arithmetic.
+pub(crate) struct Colors<'f> {
+    scene: &'f Scene,
+    stage: Stage,
+    ladder: Ladder<'f>,
+}
+
+/// Does `work` with the colours of a frame: a scene in a stage at a finite angle α, of N × N
+/// pixels.
+pub(crate) fn with_colors<T>(
+    (scene, stage, alpha, size): (&Scene, Stage, f64, u32),
+    work: impl FnOnce(&Colors<'_>) -> T,
+) -> T {
+    let arena = Arena::default();
+    work(&Colors {
+        scene,
+        stage,
+        ladder: Ladder::new(scene, stage, alpha, size, Rung::Double, &arena),
+    })
+}
+
+impl Colors<'_> {
+    /// The samples of a pixel, column and row, that shows what `decision` says. `None` where it
+    /// cannot: a sphere in the light that its line misses or that is turned away from the light.
+    pub(crate) fn color(&self, decision: Decision, (column, row): (u32, u32)) -> Option<[f32; 3]> {
+        if self.is_shared(decision) {
+            Some(self.ladder.color(decision))
+        } else {
+            self.ladder.color_if(decision, column, row)
+        }
+    }
+
+    /// Every decision whose colour all its pixels share. A face stands for all four of its
+    /// tetrahedron where their colours are one.
+    pub(crate) fn shared(&self) -> impl Iterator<Item = Decision> + '_ {
+        let solids = || 0..self.scene.spheres().len() + self.scene.tetrahedra().len();
+        let mirrored = self.mirrors().then(solids).into_iter().flatten();
+        self.apart_from_solids()
+            .chain(
+                self.surface()
+                    .is_some()
+                    .then_some(SURFACE)
+                    .into_iter()
+                    .flatten(),
+            )
+            .chain(self.of_solids(solids(), Decision::Solid))
+            .chain(self.of_solids(mirrored, Decision::Mirrored))
+            .filter(|decision| self.is_shared(*decision))
+    }
+
+    /// The decisions that the line of a pixel can lead to: those of solids and the surface that
+    /// reach as far as this pixel, whatever hides them there. The nearest solids come first.
+    pub(crate) fn near(&self, pixel: (u32, u32)) -> impl Iterator<Item = Decision> + '_ {
+        let picture = self.ladder.bounded();
+        let solids = picture.view.extents.at(pixel);
+        let floor = self
+            .surface()
+            .filter(|floor| floor.extent.holds(pixel.0, pixel.1));
+        let mirrored = floor.and_then(|floor| floor.mirror.as_ref());
+        let mirrored = mirrored.map(|mirror| mirror.view.extents.at(pixel));
+        self.of_solids(solids, Decision::Solid)
+            .chain(floor.map(|_| SURFACE).into_iter().flatten())
+            .chain(self.of_solids(mirrored.into_iter().flatten(), Decision::Mirrored))
+            .chain(self.apart_from_solids())
+    }
+
+    /// The quadrants or the background.
+    fn apart_from_solids(&self) -> impl Iterator<Item = Decision> + use<> {
+        let quadrants = if self.stage == Stage::Image {
+            0..4
+        } else {
+            0..0
+        };
+        let background = (self.stage != Stage::Image).then_some(Decision::Background);
+        quadrants.map(Decision::Quadrant).chain(background)
+    }
+
+    fn surface(&self) -> Option<&Floor<'_, Bounded>> {
+        self.ladder.bounded().floor.as_ref()
+    }
+
+    fn mirrors(&self) -> bool {
+        self.surface().is_some_and(|floor| floor.mirror.is_some())
+    }
+
+    fn of_solids<'a>(
+        &'a self,
+        solids: impl Iterator<Item = usize> + 'a,
+        decision: fn(Seen) -> Decision,
+    ) -> impl Iterator<Item = Decision> + 'a {
+        solids
+            .flat_map(|solid| self.ways_to_see(solid))
+            .map(decision)
+    }
+
+    /// The ways in which this stage shows a solid.
+    fn ways_to_see(&self, solid: usize) -> impl Iterator<Item = Seen> + use<'_> {
+        let tetrahedron = solid.checked_sub(self.scene.spheres().len());
+        let has_shadows = self.stage >= Stage::Shadow;
+        let is_seen = match self.stage {
+            Stage::Image => false,
+            Stage::Spheres => tetrahedron.is_none(),
+            Stage::Tetrahedron => tetrahedron.is_some(),
+            _ => true,
+        };
+        let faces = match tetrahedron {
+            // In flat colour one face looks like the others.
+            Some(_) if self.stage == Stage::Tetrahedron => 0..1,
+            Some(_) => 0..4,
+            None => 0..0,
+        };
+        let facing_light = &self.scene.facts().facing_light;
+        let lit_faces = faces.filter(move |face| {
+            let turned_away =
+                tetrahedron.is_some_and(|index| facing_light[index][usize::from(*face)].is_le());
+            !(has_shadows && turned_away)
+        });
+        // A scene has at most 4096 solids.
+        let seen = move |face, in_shadow| Seen {
+            solid: solid as u16,
+            face,
+            in_shadow,
+        };
+        let ball = (tetrahedron.is_none()).then(|| seen(None, false));
+        let in_shadow = has_shadows.then(|| seen(tetrahedron.map(|_| 0), true));
+        ball.into_iter()
+            .chain(lit_faces.map(move |face| seen(Some(face), false)))
+            .chain(in_shadow)
+            .filter(move |_| is_seen)
+    }
+
+    /// Whether a decision tells the colour of all its pixels: it does but for spheres in the light.
+    fn is_shared(&self, decision: Decision) -> bool {
+        match decision {
+            Decision::Solid(seen) | Decision::Mirrored(seen) => {
+                self.stage < Stage::Shading || seen.face.is_some() || seen.in_shadow
+            }
+            _ => true,
+        }
+    }
+}
+
+/// The surface where it mirrors nothing.
+const SURFACE: [Decision; 2] = [Decision::Surface, Decision::SurfaceInShadow];
