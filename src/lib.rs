@@ -40,6 +40,7 @@
 )]
 #![cfg_attr(
     feature = "program",
+    doc = "| [`program`] | another program that makes the pictures, in any language |",
     doc = "| [`report`] | speed against error: times, errors, a table, JSON, a plot |",
     doc = "| [`viewer`] | the window: keys, the clock of α, the redisplay |"
 )]
@@ -52,7 +53,7 @@
 //! | feature | what it adds |
 //! | --- | --- |
 //! | `screen` | `screen`: a picture as a texture in the caller's OpenGL context, or in one without a window |
-//! | `program`, the default | `screen`, `report`, `viewer`, `difference::save_heat`, and the program itself |
+//! | `program`, the default | `screen`, `program`, `report`, `viewer`, `difference::save_heat`, and the program itself |
 //!
 //! # What the picture is
 //!
@@ -86,6 +87,8 @@ pub mod fault;
 pub mod image;
 pub mod memory;
 mod number;
+#[cfg(feature = "program")]
+pub mod program;
 #[cfg(test)]
 mod random;
 mod render;
