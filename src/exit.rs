@@ -1,5 +1,5 @@
 //! How the program exits early: out of memory, on a panic, on a signal. It prints one line at most,
-//! leaves no unfinished file, and returns to no caller.
+//! leaves no unfinished file and no program running, and returns to no caller.
 
 mod allocator;
 #[cfg(unix)]
@@ -15,6 +15,7 @@ use std::time::Duration;
 
 use firsthit::fault;
 use firsthit::image::abandon_unfinished;
+use firsthit::program;
 
 pub(crate) use allocator::Allocator;
 
@@ -27,7 +28,7 @@ pub(crate) fn install_handlers() {
 
 /// Exits with status 1.
 pub(crate) fn now() -> ! {
-    abandon_unfinished();
+    leave_nothing();
     // Other threads, drivers' among them, are not waited for, and no exit handler runs: any of them
     // might hang.
     #[cfg(unix)]
@@ -35,6 +36,13 @@ pub(crate) fn now() -> ! {
     #[cfg(not(unix))]
     #[expect(clippy::exit, reason = "the only way from any thread")]
     std::process::exit(1);
+}
+
+/// Removes every unfinished file, and ends every program that makes pictures, for an exit that is
+/// about to come.
+fn leave_nothing() {
+    abandon_unfinished();
+    program::end_all();
 }
 
 /// Lets one thread exit, and blocks every other one that tries, so that no second line is printed.

@@ -8,13 +8,17 @@ use std::process::ExitCode;
 
 use command::Failure;
 use exit::Allocator;
+use firsthit::program;
 
 #[global_allocator]
 static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> ExitCode {
     exit::install_handlers();
-    match command::run(env::args_os()) {
+    let done = command::run(env::args_os());
+    // A thread that nobody waits for may have one.
+    program::end_all();
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(answer)) => {
             // Where nobody listens any more there is nothing to be done about it.

@@ -1,4 +1,5 @@
-//! Signals that would leave an unfinished file behind, or end the program without a message.
+//! Signals that would leave an unfinished file or another program behind, or end the program
+//! without a message.
 
 use std::fs;
 use std::sync::Arc;
@@ -6,7 +7,6 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Sender};
 use std::thread;
 
-use firsthit::image::abandon_unfinished;
 use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
@@ -20,7 +20,7 @@ pub(super) fn watch() {
     let always = Arc::new(AtomicBool::new(true));
     let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, 1, always);
     // The thread itself registers the signals: where there is no thread for it, they keep their
-    // default actions. No file is begun before they are registered.
+    // default actions. No file or program is begun before they are registered.
     let (registered, is_registered) = mpsc::channel();
     let watching = thread::Builder::new()
         .name("signals".to_owned())
@@ -42,7 +42,7 @@ fn wait(registered: Sender<()>) {
     };
     drop(registered);
     if let Some(signal) = signals.forever().next() {
-        abandon_unfinished();
+        super::leave_nothing();
         let _ = emulate_default_handler(signal);
     }
 }
