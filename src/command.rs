@@ -4,6 +4,7 @@ mod arguments;
 mod capture;
 mod compare;
 mod explain;
+mod maker;
 mod report;
 mod round_trip;
 mod view;
@@ -17,6 +18,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use firsthit::difference::{HeatError, SizesDiffer};
 use firsthit::image::{ImageError, LoadError, SaveError};
+use firsthit::program::ProgramError;
 use firsthit::report::{PlotError, ReportError};
 use firsthit::scene::{BUILTIN_TOML, SceneFileError};
 use firsthit::screen::ScreenError;
@@ -62,6 +64,8 @@ pub(crate) enum Failure {
     Image(#[from] ImageError),
     #[error(transparent)]
     Trace(#[from] TraceError),
+    #[error(transparent)]
+    Program(#[from] ProgramError),
     #[error(transparent)]
     Screen(#[from] ScreenError),
     #[error(transparent)]

@@ -3,12 +3,14 @@
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::value_parser;
 use firsthit::camera::frame_angle;
 use firsthit::image::MAX_SIZE;
+use firsthit::program::{Program, ProgramError};
 use firsthit::{Kernel, Scene, Stage};
 
 use super::Failure;
@@ -46,6 +48,28 @@ impl PictureArguments {
     }
 }
 
+/// Another program to make the pictures, if any.
+#[derive(Args)]
+pub(crate) struct ProgramArguments {
+    /// A program that makes the pictures instead: its path and arguments, in one word of the shell
+    #[arg(long, value_name = "COMMAND", conflicts_with = "kernel")]
+    program: Option<String>,
+    /// How long the program may take for a picture; 10 if not given
+    #[arg(long, value_name = "SECONDS", requires = "program", value_parser = seconds)]
+    program_timeout: Option<Duration>,
+}
+
+impl ProgramArguments {
+    /// The program of `--program`, started. Its diagnostics are lines on standard error.
+    pub(crate) fn start(&self) -> Result<Option<Program>, ProgramError> {
+        let Some(command) = &self.program else {
+            return Ok(None);
+        };
+        let timeout = self.program_timeout.unwrap_or(Duration::from_secs(10));
+        Program::start(command, timeout, super::say).map(Some)
+    }
+}
+
 /// The scene in the file `path`.
 pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let _watchdog = Watchdog::for_input(path);
@@ -78,6 +102,15 @@ pub(crate) fn finite(text: &str) -> Result<f64, &'static str> {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err("a finite number is needed"),
         Err(_) => Err("not a decimal number"),
+    }
+}
+
+/// A number of seconds, as a time that may pass.
+pub(crate) fn seconds(text: &str) -> Result<Duration, &'static str> {
+    let seconds = finite(text)?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(time) if !time.is_zero() => Ok(time),
+        _ => Err("a positive number of seconds is needed"),
     }
 }
 

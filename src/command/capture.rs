@@ -10,11 +10,12 @@ use clap::Args;
 use firsthit::camera::frame_angle;
 use firsthit::image::{Animation, Format};
 use firsthit::tracer::Progress;
-use firsthit::{Image, Scene, Stage, Tracer};
+use firsthit::{Image, Scene, Stage};
 use indicatif::{ProgressBar, ProgressFinish};
 
 use super::Failure;
-use super::arguments::{AngleArguments, PictureArguments, frames, stage};
+use super::arguments::{AngleArguments, PictureArguments, ProgramArguments, frames, stage};
+use super::maker::Maker;
 use super::round_trip::{RoundTrip, Through};
 
 #[derive(Args)]
@@ -29,6 +30,8 @@ pub(crate) struct Arguments {
     frames: Option<RangeInclusive<u64>>,
     #[command(flatten)]
     picture: PictureArguments,
+    #[command(flatten)]
+    program: ProgramArguments,
     /// What the pixels pass through before they are written; egl if not given, else osmesa, else
     /// none, whichever works first
     #[arg(long, value_name = "WAY", value_enum)]
@@ -113,16 +116,15 @@ fn wrong(message: impl std::fmt::Display) -> clap::Error {
 struct Capture {
     scene: Scene,
     stage: Stage,
-    tracer: Tracer,
+    maker: Maker,
     image: Image,
     round_trip: RoundTrip,
 }
 
 impl Capture {
-    fn trace(&mut self, alpha: f64) -> Result<(), Failure> {
-        self.tracer
-            .trace(&self.scene, self.stage, alpha, &mut self.image)?;
-        Ok(())
+    fn make(&mut self, alpha: f64) -> Result<(), Failure> {
+        self.maker
+            .make(&self.scene, self.stage, alpha, &mut self.image)
     }
 
     /// The picture after its round trip.
@@ -131,8 +133,13 @@ impl Capture {
         Ok(&self.image)
     }
 
-    fn picture(&mut self, alpha: f64) -> Result<&Image, Failure> {
-        self.trace(alpha)?;
+    /// The picture of one frame after its round trip. With the last of all `frames` the maker is
+    /// finished.
+    fn picture(&mut self, frame: u64, frames: &RangeInclusive<u64>) -> Result<&Image, Failure> {
+        self.make(frame_angle(frame))?;
+        if frame == *frames.end() {
+            self.maker.finish()?;
+        }
         self.sent()
     }
 }
@@ -144,33 +151,34 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut capture = Capture {
         scene: picture.scene()?,
         stage: arguments.stage,
-        tracer: Tracer::new(picture.kernel, picture.threads())?,
+        maker: Maker::new(picture, &arguments.program)?,
         image: Image::new(size)?,
         round_trip: RoundTrip::open(arguments.through, size)?,
     };
     match job {
         Job::Picture { alpha, path } => {
-            let progress = capture.tracer.progress();
-            while_watched(size, &progress, || capture.trace(alpha))?;
+            while_watched(size, capture.maker.progress(), || capture.make(alpha))?;
+            capture.maker.finish()?;
             capture.sent()?.save(path)?;
         }
         Job::Pictures { frames, pattern } => {
             let digits = frames.end().to_string().len();
-            for frame in with_progress(frames) {
+            for frame in with_progress(frames.clone()) {
                 let path = pattern.replace("{}", &format!("{frame:0digits$}"));
-                capture.picture(frame_angle(frame))?.save(path)?;
+                capture.picture(frame, &frames)?.save(path)?;
             }
         }
         Job::Animation { frames, path } => {
             let mut animation = Animation::create(path, size, count(&frames))?;
-            for frame in with_progress(frames) {
-                animation.push(capture.picture(frame_angle(frame))?)?;
+            for frame in with_progress(frames.clone()) {
+                animation.push(capture.picture(frame, &frames)?)?;
             }
             animation.finish()?;
         }
     }
     // Said last: where the capture fails, one line says why, and no other.
-    if let Some(note) = capture.round_trip.note() {
+    let notes = [capture.maker.note(), capture.round_trip.note()];
+    for note in notes.into_iter().flatten() {
         super::say(&note);
     }
     Ok(())
@@ -185,8 +193,12 @@ fn count(frames: &RangeInclusive<u64>) -> u64 {
 /// time.
 const UPDATE: Duration = Duration::from_millis(200);
 
-/// Traces a picture, with a bar on standard error that grows with its rows, if that is a terminal.
-fn while_watched<T>(size: u32, progress: &Progress, trace: impl FnOnce() -> T) -> T {
+/// Makes a picture, with a bar on standard error that grows with its rows, if that is a terminal and
+/// the progress is known.
+fn while_watched<T>(size: u32, progress: Option<Progress>, make: impl FnOnce() -> T) -> T {
+    let Some(progress) = progress else {
+        return make();
+    };
     thread::scope(|scope| {
         let (traced, is_traced) = mpsc::channel::<()>();
         let watch = move || {
@@ -197,7 +209,7 @@ fn while_watched<T>(size: u32, progress: &Progress, trace: impl FnOnce() -> T) -
         };
         // Where the system has no thread for it, nobody watches.
         let _watching = thread::Builder::new().spawn_scoped(scope, watch);
-        let result = trace();
+        let result = make();
         drop(traced);
         result
     })

@@ -10,8 +10,8 @@ use firsthit::{Image, scene};
 pub(crate) type Act<'a> = &'a dyn Fn(&[&str], &Path);
 
 /// Calls `act`, which panics on a finding, with words that do no harm: they write only into the
-/// folder, open no window and take no time. Others are followed by `--help`, with which nothing is
-/// done but they are read all the same.
+/// folder, open no window, start no program and take no time. Others are followed by `--help`, with
+/// which nothing is done but they are read all the same.
 pub(crate) fn run(bytes: &[u8], act: Act<'_>) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -38,6 +38,7 @@ fn is_harmless(words: &[&str]) -> bool {
         _ => false,
     };
     is_quick
+        && !has("--program")
         && words.iter().all(|word| {
             let is_short = |number: &str| number.len() < 3;
             !word.contains(['/', '\\', ':'])
