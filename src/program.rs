@@ -107,8 +107,8 @@ impl Program {
         })
     }
 
-    /// The words of the command without the folder of the first, as in `python3 tracer.py`: at most
-    /// 40 characters, none of which is a control character.
+    /// The words of the command without the folders of files, as in `python3 tracer.py`: at most 40
+    /// characters, none of which is a control character.
     pub fn name(&self) -> &str {
         self.words.name()
     }
@@ -201,6 +201,15 @@ impl Render for Program {
         image: &mut Image,
     ) -> Result<(), RenderError> {
         Ok(self.ask(scene, stage, alpha, image)?)
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.files()
+    }
+
+    /// Ends the process: the next picture is asked of a new one.
+    fn reload(&mut self) {
+        self.process = None;
     }
 }
 

@@ -1,5 +1,7 @@
 //! Whatever makes pictures of scenes: the tracer, or somebody else's in its place.
 
+use std::path::PathBuf;
+
 use crate::{Image, Scene, Stage, Tracer};
 
 /// Makes pictures of scenes.
@@ -22,6 +24,16 @@ pub trait Render {
         alpha: f64,
         image: &mut Image,
     ) -> Result<(), RenderError>;
+
+    /// Files that its pictures depend on, such as the program that makes them: none, if not said
+    /// otherwise.
+    fn files(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
+    /// One of its [`files`](Render::files) has changed: the next picture is to be made with what is
+    /// there now.
+    fn reload(&mut self) {}
 }
 
 /// Why there is no picture, in one line: any error, or a text.

@@ -25,7 +25,7 @@ impl Words {
             .ok_or_else(|| ProgramError::Words(command.to_owned()))?
             .into_iter();
         let program = words.next().ok_or(ProgramError::Empty)?;
-        let arguments = words.collect();
+        let arguments: Vec<String> = words.collect();
         let name = name(&program, &arguments);
         Ok(Words {
             program,
@@ -34,7 +34,7 @@ impl Words {
         })
     }
 
-    /// The words without the folder of the first, cut short.
+    /// The words without the folders of files, cut short.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
@@ -75,13 +75,17 @@ impl Words {
     }
 }
 
-fn name(program: &str, arguments: &Vec<String>) -> String {
-    let file = Path::new(program).file_name();
-    let mut name = file.map_or_else(|| program.into(), |file| file.to_string_lossy());
-    for argument in arguments {
-        name.to_mut().push(' ');
-        name.to_mut().push_str(argument);
-    }
+fn name(program: &str, arguments: &[String]) -> String {
+    let words = arguments.iter().map(|argument| {
+        let is_file = Path::new(argument).is_file();
+        if is_file {
+            file_name(argument)
+        } else {
+            argument
+        }
+    });
+    let words: Vec<&str> = [file_name(program)].into_iter().chain(words).collect();
+    let name = words.join(" ");
     let mut shown = String::new();
     for character in name.chars() {
         if character.is_control() {
@@ -96,6 +100,12 @@ fn name(program: &str, arguments: &Vec<String>) -> String {
     shown
 }
 
+/// The last part of a path.
+fn file_name(path: &str) -> &str {
+    let name = Path::new(path).file_name();
+    name.and_then(|name| name.to_str()).unwrap_or(path)
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 mod tests {
@@ -106,6 +116,7 @@ mod tests {
         for (command, name) in [
             ("./homework", "homework"),
             ("/usr/bin/python3 tracer.py", "python3 tracer.py"),
+            ("cat /etc/passwd /no/such", "cat passwd /no/such"),
             ("'/my programs/a b' -x", "a b -x"),
             ("a '\n'", "a \\n"),
             ("/", "/"),
