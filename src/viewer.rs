@@ -2,7 +2,7 @@
 //!
 //! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place:
 //! the keys are one table ([`key_table`]), α is a clock of its own that knows no window, the window
-//! knows no scene, pictures are traced on a thread of their own, and the application between them
+//! knows no scene, pictures are made on threads of their own, and the application between them
 //! asks for one only when stage or α changed.
 
 mod action;
@@ -26,12 +26,15 @@ mod panel;
 mod playback;
 mod pointer;
 mod rect;
+mod renderer;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod server;
 mod snapshot;
 mod tracing;
+mod watch;
 mod window;
 mod worker;
+mod wrong;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod x11;
 mod zoom;
@@ -41,8 +44,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::image::SaveError;
+use crate::scene::SceneFileError;
 use crate::screen::Differs;
-use crate::{Kernel, Scene, Stage};
+use crate::{Kernel, Render, Scene, Stage};
 
 pub use action::key_table;
 pub use error::ViewerError;
@@ -53,12 +57,16 @@ pub use playback::Pace;
 pub struct Options {
     /// What is seen.
     pub scene: Scene,
+    /// The file that the scene was read from: where it changes while the viewer is seen, it is read
+    /// again, and shown unless it is refused.
+    pub scene_file: Option<PathBuf>,
     /// The stage it opens on.
     pub stage: Stage,
     /// N: pictures are N × N pixels.
     pub size: u32,
-    /// How pictures are traced.
-    pub kernel: Kernel,
+    /// The kernel that the viewer opens on; if there is none, the first of the renderers that it is
+    /// given, else the default kernel.
+    pub kernel: Option<Kernel>,
     /// Threads that trace; 0 for one a core.
     pub threads: usize,
     /// How stage 7 advances.
@@ -93,6 +101,17 @@ pub enum Event {
     Saved(PathBuf),
     /// The shown picture could not be saved.
     NotSaved(SaveError),
+    /// There is no picture, and the last one stays.
+    NotRendered {
+        /// What should have made it.
+        renderer: String,
+        /// Why it did not, in one line.
+        reason: String,
+    },
+    /// The scene file has changed, and was read again.
+    SceneRead(PathBuf),
+    /// The scene file has changed, and the last scene stays.
+    SceneRefused(SceneFileError),
     /// A pixel that was clicked on, worked through: lines of text.
     Inspected(String),
     /// The window is closed.
@@ -125,6 +144,12 @@ impl fmt::Display for Event {
             ),
             Event::Saved(path) => write!(f, "saved {}", path.display()),
             Event::NotSaved(error) => write!(f, "not saved: {error}"),
+            Event::NotRendered { renderer, reason } if reason.starts_with(renderer) => {
+                f.write_str(reason)
+            }
+            Event::NotRendered { renderer, reason } => write!(f, "{renderer}: {reason}"),
+            Event::SceneRead(path) => write!(f, "read {} again", path.display()),
+            Event::SceneRefused(error) => error.fmt(f),
             Event::Inspected(text) => f.write_str(text.trim_end()),
             Event::Left(counts) => counts.fmt(f),
         }
@@ -156,7 +181,9 @@ impl fmt::Display for Counts {
     }
 }
 
-/// Opens the viewer and stays until it is left. `report` is told what happens, on the calling
+/// Opens the viewer and stays until it is left. `renderers` are shown like kernels, each on a
+/// thread of its own, however slow it is; where one of its files changes while the viewer is seen,
+/// it is reloaded, and its picture comes anew. `report` is told what happens, on the calling
 /// thread.
 ///
 /// A process can do this once. On macOS and Windows it must be the main thread that does.
@@ -167,6 +194,10 @@ impl fmt::Display for Counts {
 ///
 /// # Panics
 /// On macOS and Windows, where the calling thread is not the main thread.
-pub fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
-    app::run(options, report)
+pub fn run(
+    options: Options,
+    renderers: Vec<Box<dyn Render + Send>>,
+    report: &mut dyn FnMut(Event),
+) -> Result<(), ViewerError> {
+    app::run(options, renderers, report)
 }

@@ -27,6 +27,8 @@ mod program;
 #[path = "../src/random.rs"]
 #[expect(dead_code, reason = "other tests choose fractions, too")]
 mod random;
+#[path = "viewer/renderers.rs"]
+mod renderers;
 #[path = "viewer/session.rs"]
 mod session;
 #[path = "viewer/soak.rs"]

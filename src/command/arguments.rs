@@ -25,9 +25,9 @@ pub(crate) struct PictureArguments {
     /// A scene in TOML; the built-in scene if not given
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// How numbers are computed
-    #[arg(long, value_name = "NAME", default_value = Kernel::default().name(), value_parser = kernel())]
-    pub(crate) kernel: Kernel,
+    /// How numbers are computed; exact if not given
+    #[arg(long, value_name = "NAME", value_parser = kernel())]
+    pub(crate) kernel: Option<Kernel>,
     /// Threads to trace with; one a core if not given
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -40,6 +40,11 @@ impl PictureArguments {
             Some(path) => read_scene(path),
             None => Ok(Scene::builtin()),
         }
+    }
+
+    /// The file of `--scene`.
+    pub(crate) fn scene_file(&self) -> Option<PathBuf> {
+        self.scene.clone()
     }
 
     /// The number of threads as the library takes it: 0 for one a core.
@@ -65,9 +70,35 @@ impl ProgramArguments {
         let Some(command) = &self.program else {
             return Ok(None);
         };
-        let timeout = self.program_timeout.unwrap_or(Duration::from_secs(10));
-        Program::start(command, timeout, super::say).map(Some)
+        start(command, self.program_timeout).map(Some)
     }
+}
+
+/// Other programs that make pictures too.
+#[derive(Args)]
+pub(crate) struct ProgramsArguments {
+    /// A program that makes pictures too: its path and arguments, in one word of the shell; may be
+    /// given several times
+    #[arg(long = "program", value_name = "COMMAND")]
+    programs: Vec<String>,
+    /// How long a program may take for a picture; 10 if not given
+    #[arg(long, value_name = "SECONDS", requires = "programs", value_parser = seconds)]
+    program_timeout: Option<Duration>,
+}
+
+impl ProgramsArguments {
+    /// The programs of `--program`, started.
+    pub(crate) fn start(&self) -> Result<Vec<Program>, ProgramError> {
+        let programs = self.programs.iter();
+        let start = |command: &String| start(command, self.program_timeout);
+        programs.map(start).collect()
+    }
+}
+
+/// Starts a program; its diagnostics are lines on standard error.
+fn start(command: &str, timeout: Option<Duration>) -> Result<Program, ProgramError> {
+    let timeout = timeout.unwrap_or(Duration::from_secs(10));
+    Program::start(command, timeout, super::say)
 }
 
 /// The scene in the file `path`.

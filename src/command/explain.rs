@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let picture = &arguments.picture;
-    let tracer = Tracer::new(picture.kernel, picture.threads())?;
+    let tracer = Tracer::new(picture.kernel.unwrap_or_default(), picture.threads())?;
     let pixel = (arguments.column, arguments.row);
     let alpha = arguments.angle.alpha();
     print(&tracer.explain(

@@ -30,7 +30,10 @@ impl Maker {
                 nans: 0,
                 infinities: 0,
             },
-            None => Maker::Kernel(Tracer::new(picture.kernel, picture.threads())?),
+            None => Maker::Kernel(Tracer::new(
+                picture.kernel.unwrap_or_default(),
+                picture.threads(),
+            )?),
         })
     }
 

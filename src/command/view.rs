@@ -2,10 +2,10 @@
 
 use clap::Args;
 use clap::value_parser;
-use firsthit::Stage;
 use firsthit::viewer::{self, Event, Options, Pace};
+use firsthit::{Render, Stage};
 
-use super::arguments::{PictureArguments, finite, stage};
+use super::arguments::{PictureArguments, ProgramsArguments, finite, stage};
 use super::watchdog::Watchdog;
 use super::{Failure, print};
 
@@ -16,6 +16,8 @@ pub(crate) struct Arguments {
     stage: Stage,
     #[command(flatten)]
     picture: PictureArguments,
+    #[command(flatten)]
+    programs: ProgramsArguments,
     #[command(flatten)]
     pace: PaceArguments,
     /// Leave after this many frames
@@ -44,6 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let picture = &arguments.picture;
     let options = Options {
         scene: picture.scene()?,
+        scene_file: picture.scene_file(),
         stage: arguments.stage,
         size: picture.size,
         kernel: picture.kernel,
@@ -51,10 +54,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         pace,
         exit_after_frames: arguments.exit_after_frames,
     };
+    let programs = arguments.programs.start()?.into_iter();
+    let renderers = programs.map(|program| -> Box<dyn Render + Send> { Box::new(program) });
     let mut opening = Some(Watchdog::for_driver(options.size));
-    viewer::run(options, &mut |event| match event {
+    viewer::run(options, renderers.collect(), &mut |event| match event {
         Event::Opened => opening = None,
-        Event::NotSaved(_) | Event::Differs { .. } => super::say(&event.to_string()),
+        Event::NotSaved(_)
+        | Event::Differs { .. }
+        | Event::NotRendered { .. }
+        | Event::SceneRefused(_) => super::say(&event.to_string()),
         // A person who closed the terminal still has the window.
         Event::FirstFrame { .. } => drop(print(&format!("{}{event}\n", viewer::key_table()))),
         _ => drop(print(&format!("{event}\n"))),

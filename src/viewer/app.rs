@@ -4,13 +4,16 @@ mod actions;
 mod events;
 mod hud_values;
 
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
 use crate::screen::driver_limits;
-use crate::{Kernel, Stage};
+use crate::tracer::InDoubt;
+use crate::{Image, Render, RenderError, Scene, Stage};
 
 use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing};
@@ -20,45 +23,58 @@ use super::hud::Hud;
 use super::information::Times;
 use super::playback::Playback;
 use super::pointer::Pointer;
+use super::renderer::{Renderer, Renderers};
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
-use super::tracing::{Frame, FrameTracer, Reply, Tracing};
+use super::tracing::{Frame, Pictures, Reply, Traced, Tracing};
+use super::watch::{Change, Watch, Watched};
 use super::window::GlWindow;
 use super::{Counts, Event, Options, ViewerError};
 
 /// How long a redisplay waits for the next picture before it draws the last one again.
 const PATIENCE: Duration = Duration::from_millis(100);
 
+/// How long a renderer is at a picture before that is said.
+const SLOW: Duration = Duration::from_millis(500);
+
 /// How often a window that nothing can be drawn on is polled: no event says when that ends.
 const POLL: Duration = Duration::from_millis(250);
 
 /// Opens the viewer and stays until it is left.
-pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
+pub(super) fn run(
+    options: Options,
+    renderers: Vec<Box<dyn Render + Send>>,
+    report: &mut dyn FnMut(Event),
+) -> Result<(), ViewerError> {
     let started = Instant::now();
-    let frame_tracer = FrameTracer::new(&options)?;
+    let of_kernels = Pictures::of_kernels(&options)?;
     let event_loop = event_loop()?;
     driver_limits::check(options.size)?;
     let proxy = event_loop.create_proxy();
-    let comparing = {
-        let proxy = proxy.clone();
-        Comparing::start(&options, move || {
-            let _ = proxy.send_event(());
-        })?
-    };
-    let tracing = Tracing::start(frame_tracer, move || {
-        // Without an event loop nobody waits for the picture.
+    let wake = move || {
+        // Without an event loop nobody waits.
         let _ = proxy.send_event(());
-    })?;
+    };
+    let comparing = Comparing::start(&options, wake.clone())?;
+    let watch = Watch::start(watched(&options, &renderers), wake.clone());
+    let names = renderers.iter().map(|renderer| Arc::from(renderer.name()));
+    let shown = Renderers::new(names, options.kernel);
+    let tracing = Tracing::start(of_kernels, renderers, wake)?;
     let mut app = App {
         started,
+        scene: Arc::new(options.scene),
+        scene_file: options.scene_file,
+        scene_refusal: None,
         stage: options.stage,
-        kernel: options.kernel,
+        renderers: shown,
         size: options.size,
         playback: Playback::new(options.pace),
         exit_after_frames: options.exit_after_frames,
         report,
         tracing,
         comparing,
+        watch: watch.map_err(ViewerError::Thread)?,
+        failure_of_renderer: None,
         content: Content::default(),
         gl_window: None,
         clipboard: None,
@@ -82,10 +98,25 @@ pub(super) fn run(options: Options, report: &mut dyn FnMut(Event)) -> Result<(),
     app.leave(ended.is_ok())
 }
 
+/// The files to watch.
+fn watched(options: &Options, renderers: &[Box<dyn Render + Send>]) -> Vec<Watched> {
+    let scene = options.scene_file.clone().map(Watched::Scene);
+    let renderers = renderers.iter().enumerate();
+    let of_renderers = renderers.flat_map(|(number, renderer)| {
+        let files = renderer.files().into_iter();
+        files.map(move |file| Watched::Renderer(number, file))
+    });
+    scene.into_iter().chain(of_renderers).collect()
+}
+
 struct App<'a> {
     started: Instant,
+    scene: Arc<Scene>,
+    scene_file: Option<PathBuf>,
+    /// Why the scene file, as it is now, gives no scene.
+    scene_refusal: Option<String>,
     stage: Stage,
-    kernel: Kernel,
+    renderers: Renderers,
     /// N.
     size: u32,
     playback: Playback,
@@ -93,6 +124,9 @@ struct App<'a> {
     report: &'a mut dyn FnMut(Event),
     tracing: Tracing,
     comparing: Comparing,
+    watch: Watch,
+    /// A frame of which there is no picture, and why.
+    failure_of_renderer: Option<(Frame, String)>,
     content: Content,
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     gl_window: Option<GlWindow>,
@@ -120,9 +154,27 @@ struct App<'a> {
 }
 
 impl App<'_> {
+    /// What is said as long as it is so: why the scene or the picture is not what was asked for, or
+    /// how long a slow renderer has been at it.
+    fn notice(&self) -> Option<String> {
+        let failure = self.failure_of_renderer.as_ref();
+        let failure = failure.filter(|(frame, _)| *frame == self.wanted());
+        let slow = || match self.renderers.shown() {
+            Renderer::Kernel(_) => None,
+            Renderer::Given(given) => {
+                let time = self.waits_for().filter(|time| *time >= SLOW)?.as_secs_f64();
+                Some(format!("{} has been at it for {time:.1} s", given.name))
+            }
+        };
+        self.scene_refusal
+            .clone()
+            .or_else(|| failure.map(|(_, reason)| reason.clone()))
+            .or_else(slow)
+    }
+
     /// Ends the viewer after the last event.
     fn leave(mut self, ended_well: bool) -> Result<(), ViewerError> {
-        self.counts.traces = self.tracing.traces;
+        self.counts.traces = self.tracing.made();
         for reply in self.tracing.finish() {
             if let Reply::Saved(saved) = reply {
                 (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
@@ -145,16 +197,27 @@ impl App<'_> {
     /// The picture that should be shown.
     fn wanted(&self) -> Frame {
         Frame {
+            scene: self.scene.clone(),
             stage: self.stage,
             alpha: self.playback.alpha(),
-            kernel: self.kernel,
+            renderer: self.renderers.shown().clone(),
         }
     }
 
     /// The picture that should be shown is not there yet.
     fn waiting(&self) -> bool {
-        self.tracing
-            .is_behind(self.content.traced().map(|traced| traced.frame))
+        self.waits_for().is_some()
+    }
+
+    /// For how long it has not been there.
+    fn waits_for(&self) -> Option<Duration> {
+        let shown = self.content.traced().map(|traced| &traced.frame);
+        self.tracing.behind(shown)
+    }
+
+    /// Requests the picture that should be shown.
+    fn request(&mut self) {
+        self.tracing.request(self.wanted());
     }
 
     /// Requests the next picture. Before that α advances to `now`, if the animation plays and its
@@ -164,10 +227,11 @@ impl App<'_> {
             self.playback.advance(now);
             // The next picture is traced over this one, unless its pixels are looked at.
             if !self.hud.names_pixels() {
-                self.content.give_back(self.wanted());
+                let next = self.wanted();
+                self.content.give_back(&next);
             }
         }
-        self.tracing.request(self.wanted());
+        self.request();
     }
 
     /// Uploads what the texture lacks of the content, if that can be had. Returns whether there was
@@ -199,7 +263,9 @@ impl App<'_> {
         let start = Instant::now();
         let overdue = std::mem::take(&mut self.overdue);
         event_loop.set_control_flow(ControlFlow::Wait);
-        if !self.visible() {
+        let visible = self.visible();
+        self.watch.hold(!visible);
+        if !visible {
             self.playback.hold();
             self.frame_rate.stop();
             if self.minimized {
@@ -327,8 +393,9 @@ impl App<'_> {
                 Reply::Traced(traced, samples) => {
                     // A stage that was left meanwhile is not shown any more; an angle is, or one
                     // that moves fast would never be seen.
-                    let Frame { stage, kernel, .. } = traced.frame;
-                    if (stage, kernel) == (self.stage, self.kernel) {
+                    let (wanted, frame) = (self.wanted(), &traced.frame);
+                    let alpha = frame.alpha;
+                    if *frame == (Frame { alpha, ..wanted }) {
                         self.content.picture_came(traced, samples, Instant::now());
                         self.draw_in_time(event_loop);
                     }
@@ -344,20 +411,12 @@ impl App<'_> {
                     (self.report)(Event::Inspected(text));
                     self.touch();
                 }
-                Reply::Refused(_, error) if self.content.traced().is_none() => {
-                    return Err(error.into());
-                }
-                Reply::Refused(frame, error) => {
-                    self.hud.say(error.to_string());
-                    if self.kernel == frame.kernel {
-                        self.next_kernel();
-                        self.retitle();
-                        self.tracing.request(self.wanted());
-                    }
-                    self.touch();
-                }
+                Reply::Refused(frame, reason) => self.refuse(frame, reason)?,
                 Reply::Failed(error) => return Err(error),
             }
+        }
+        while let Some(change) = self.watch.change() {
+            self.reload(change);
         }
         self.compare();
         while let Some(reply) = self.comparing.reply() {
@@ -376,6 +435,78 @@ impl App<'_> {
         Ok(())
     }
 
+    /// There is no picture of `frame`, for this reason.
+    fn refuse(&mut self, frame: Frame, reason: RenderError) -> Result<(), ViewerError> {
+        let is_wanted = self.tracing.refuse(&frame);
+        match &frame.renderer {
+            Renderer::Kernel(_) if self.content.traced().is_none() => {
+                return Err(ViewerError::Refused(reason));
+            }
+            // Another kernel has one.
+            Renderer::Kernel(_) => {
+                self.hud.say(reason.to_string());
+                if self.renderers.shown() == &frame.renderer {
+                    self.renderers.show_next();
+                    self.retitle();
+                    self.request();
+                }
+            }
+            // What failed may be mended while it is looked at.
+            Renderer::Given(given) => {
+                let event = Event::NotRendered {
+                    renderer: given.name.to_string(),
+                    reason: reason.to_string(),
+                };
+                if is_wanted {
+                    self.failure_of_renderer = Some((frame.clone(), event.to_string()));
+                    // A program that fails is not started again for each frame.
+                    self.stop();
+                    self.retitle();
+                }
+                (self.report)(event);
+                if self.content.traced().is_none() {
+                    self.content.picture_came(
+                        Traced {
+                            frame,
+                            number: 0,
+                            changed: 0..self.size,
+                            time: Duration::ZERO,
+                            in_doubt: InDoubt::default(),
+                        },
+                        Arc::new(Image::new(self.size)?),
+                        Instant::now(),
+                    );
+                }
+            }
+        }
+        self.touch();
+        Ok(())
+    }
+
+    /// A watched file has changed.
+    fn reload(&mut self, change: Change) {
+        match change {
+            Change::Scene(read) => match *read {
+                Ok(scene) => {
+                    self.scene = Arc::new(scene);
+                    self.scene_refusal = None;
+                    if let Some(path) = &self.scene_file {
+                        (self.report)(Event::SceneRead(path.clone()));
+                    }
+                }
+                Err(error) => {
+                    self.scene_refusal = Some(error.to_string());
+                    (self.report)(Event::SceneRefused(error));
+                }
+            },
+            Change::Renderer(number) => self.renderers.has_changed(number),
+        }
+        if !self.playing() {
+            self.request();
+        }
+        self.touch();
+    }
+
     /// Requests a redisplay at once, for something other than the picture has changed.
     fn touch(&mut self) {
         let open = self.hud.has_panel() || self.content.shows_errors();
@@ -388,8 +519,8 @@ impl App<'_> {
 
     /// Requests the errors of the picture, if they are to be shown.
     fn compare(&mut self) {
-        if let Some(frame) = self.content.frame_to_compare() {
-            self.comparing.request(frame);
+        if let Some((frame, image)) = self.content.to_compare() {
+            self.comparing.request(frame, image);
         }
     }
 
@@ -412,7 +543,7 @@ impl App<'_> {
         let title = format!(
             "firsthit — {} — {} — α = {:.3}{tail}",
             self.stage,
-            self.kernel.name(),
+            self.renderers.shown().name(),
             self.playback.alpha(),
         );
         if title != self.title {

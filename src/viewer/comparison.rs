@@ -1,20 +1,20 @@
-//! The error view: the shown kernel against `reference`, on a thread of its own.
+//! The error view: the shown picture against the truth, on a thread of its own.
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::UVec2;
 
+use crate::diagnosis::{Examination, TOLERANCE};
 use crate::difference::{error_color, steps};
 use crate::tracer::{Decision, Progress};
-use crate::{Image, Kernel, Tracer};
+use crate::{Image, Kernel, Scene, Stage, Tracer};
 
+use super::renderer::Renderer;
 use super::tracing::Frame;
 use super::worker::Worker;
+use super::wrong::Wrong;
 use super::{Options, ViewerError};
-
-/// The colour of a pixel with a wrong decision: none of the scale's.
-pub(super) const WRONG: [u8; 3] = [0, 255, 0];
 
 /// Wrong pixels are ringed one by one in tiles of so many pixels a side, as long as a tile has few
 /// of them.
@@ -30,13 +30,15 @@ pub(super) struct Compared {
     /// In false colours.
     pub(super) image: Arc<Image>,
     /// Wrong pixels, column and row, that could be missed.
-    pub(super) rings: Vec<UVec2>,
-    /// Pixels with a wrong decision.
-    pub(super) wrong: usize,
-    /// Samples that are not those of `reference`.
+    pub(super) rings: Vec<(UVec2, Wrong)>,
+    /// The kinds of wrong pixels that there are, and how many of each.
+    pub(super) wrong: Vec<(Wrong, usize)>,
+    /// Samples that are not the true ones, to the last bit.
     pub(super) misrounded: usize,
-    /// The largest error in f32 steps of pixels that are decided rightly.
+    /// The largest error in f32 steps of pixels that are not wrong.
     pub(super) largest: u32,
+    /// What the picture looks like a mistake of, one a line.
+    pub(super) hints: Vec<String>,
 }
 
 /// What the thread answers.
@@ -68,24 +70,30 @@ impl ErrorView {
     }
 
     /// Whether those of `frame` are not there yet.
-    pub(super) fn are_awaited(&self, frame: Frame) -> bool {
-        self.done.as_ref().map(|compared| compared.frame) != Some(frame)
+    pub(super) fn are_awaited(&self, frame: &Frame) -> bool {
+        self.done.as_ref().map(|compared| &compared.frame) != Some(frame)
     }
 
     /// What is seen, and how far the comparison of `frame` is, of pictures of `size` × `size`
     /// pixels.
-    pub(super) fn text(&self, frame: Frame, size: u32) -> String {
+    pub(super) fn text(&self, frame: &Frame, size: u32) -> String {
         let mut lines = Vec::new();
         if let Some(compared) = &self.done {
+            let wrong: usize = compared.wrong.iter().map(|(_, count)| count).sum();
+            let ringed = if compared.rings.is_empty() {
+                ""
+            } else {
+                ", single ones ringed"
+            };
             lines.push(format!(
-                "{} against reference\n\
-                 wrong pixels: {} (green, single ones ringed)\n\
+                "{} against the truth\n\
+                 wrong pixels: {wrong}{ringed}\n\
                  misrounded samples: {}, at most {} f32 steps off",
-                compared.frame.kernel.name(),
-                compared.wrong,
+                compared.frame.renderer.name(),
                 compared.misrounded,
                 compared.largest,
             ));
+            lines.extend(compared.hints.iter().map(|hint| format!("hint: {hint}")));
         }
         if self.are_awaited(frame) {
             let tracing = self.tracing.as_ref().map(|(kernel, progress)| {
@@ -94,7 +102,7 @@ impl ErrorView {
             });
             lines.push(format!(
                 "comparing {}{} … {:.1} s",
-                frame.kernel.name(),
+                frame.renderer.name(),
                 tracing.unwrap_or_default(),
                 self.since.elapsed().as_secs_f64()
             ));
@@ -105,9 +113,12 @@ impl ErrorView {
 
 /// The thread that compares.
 pub(super) struct Comparing {
-    worker: Worker<Frame, Reply>,
+    worker: Worker<Task, Reply>,
     requested: Option<Frame>,
 }
+
+/// A frame, and its picture where a renderer made it that does not tell its decisions.
+struct Task(Frame, Option<Arc<Image>>);
 
 impl Comparing {
     /// Starts the thread; `wake` is called there when there is a reply.
@@ -118,16 +129,24 @@ impl Comparing {
         options: &Options,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Comparing, ViewerError> {
-        let (scene, size, threads) = (options.scene.clone(), options.size, options.threads);
-        let worker = Worker::start("comparing", wake, move |frame, reply| {
-            let answer = compare(frame, |kernel| {
+        let (size, threads) = (options.size, options.threads);
+        let worker = Worker::start("comparing", wake, move |Task(frame, image), reply| {
+            let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
+            let mut trace = |kernel| {
                 let mut image = Image::new(size)?;
                 let mut tracer = Tracer::new(kernel, threads)?;
                 reply(Reply::Begun(kernel, tracer.progress()));
-                let Frame { stage, alpha, .. } = frame;
-                let decisions = tracer.trace_with_decisions(&scene, stage, alpha, &mut image)?;
+                let decisions = tracer.trace_with_decisions(scene, stage, alpha, &mut image)?;
                 Ok((image, decisions))
-            });
+            };
+            let answer = match (&frame.renderer, image) {
+                (Renderer::Kernel(kernel), _) => compare_kernel(*kernel, &mut trace),
+                (Renderer::Given(_), None) => return,
+                (Renderer::Given(_), Some(image)) => {
+                    examine(&image, threads, (scene, stage, alpha))
+                }
+            };
+            let answer = answer.map(|errors| errors.compared(frame.clone()));
             reply(answer.map_or_else(Reply::Failed, Reply::Done));
         })
         .map_err(ViewerError::Thread)?;
@@ -138,10 +157,16 @@ impl Comparing {
     }
 
     /// Requests the errors of `frame`, unless they were requested last.
-    pub(super) fn request(&mut self, frame: Frame) {
-        if self.requested != Some(frame) {
-            self.requested = Some(frame);
-            self.worker.request(frame);
+    pub(super) fn request(&mut self, frame: &Frame, image: Option<&Arc<Image>>) {
+        let image = match frame.renderer {
+            Renderer::Kernel(_) => None,
+            // The next picture comes with its samples.
+            Renderer::Given(_) if image.is_none() => return,
+            Renderer::Given(_) => image.cloned(),
+        };
+        if self.requested.as_ref() != Some(frame) {
+            self.requested = Some(frame.clone());
+            self.worker.request(Task(frame.clone(), image));
         }
     }
 
@@ -155,58 +180,101 @@ impl Comparing {
     }
 }
 
-/// How far `frame` is from the truth; `trace` gives the picture of a kernel, and what was decided
-/// for each pixel.
-fn compare(
-    frame: Frame,
+/// A picture, the true one, and what is wrong with each pixel, rows from the bottom.
+struct Errors {
+    image: Image,
+    truth: Image,
+    wrong: Vec<Option<Wrong>>,
+    hints: Vec<String>,
+}
+
+/// The errors of a kernel, whose decisions tell what is wrong; `trace` gives the picture of a
+/// kernel, and what was decided for each pixel.
+fn compare_kernel(
+    kernel: Kernel,
     mut trace: impl FnMut(Kernel) -> Result<(Image, Vec<Decision>), ViewerError>,
-) -> Result<Compared, ViewerError> {
-    let (mut image, decisions) = trace(frame.kernel)?;
+) -> Result<Errors, ViewerError> {
+    let (image, decisions) = trace(kernel)?;
     let (truth, true_decisions) = trace(Kernel::Reference)?;
-    let wrong: Vec<bool> = decisions
-        .iter()
-        .zip(&true_decisions)
-        .map(|(decision, truth)| decision != truth)
-        .collect();
-    let (mut misrounded, mut largest) = (0, 0);
-    let pixels = image.samples_mut().chunks_exact_mut(3);
-    for ((samples, truth), &wrong) in pixels.zip(truth.samples().chunks_exact(3)).zip(&wrong) {
-        let errors = [0, 1, 2].map(|channel| steps(samples[channel], truth[channel]));
-        misrounded += errors.iter().filter(|&&error| error != Some(0)).count();
-        // A NaN in the place of a number is worse than any number.
-        let worst = match errors {
-            [Some(red), Some(green), Some(blue)] => Some(red.max(green).max(blue)),
-            _ => None,
-        };
-        let color = if wrong {
-            WRONG
-        } else {
-            largest = largest.max(worst.unwrap_or(u32::MAX));
-            error_color(worst)
-        };
-        for (sample, byte) in samples.iter_mut().zip(color) {
-            *sample = f32::from(byte) / 255.0;
-        }
-    }
-    Ok(Compared {
-        frame,
-        image: Arc::new(image),
-        rings: rings(&wrong, truth.size() as usize),
-        wrong: wrong.iter().filter(|&&wrong| wrong).count(),
-        misrounded,
-        largest,
+    let pairs = decisions.into_iter().zip(true_decisions);
+    Ok(Errors {
+        image,
+        truth,
+        wrong: pairs
+            .map(|(decision, truth)| Wrong::of_decision(decision, truth))
+            .collect(),
+        hints: Vec::new(),
     })
 }
 
+/// The errors of a picture of which nothing is known but its samples.
+fn examine(
+    image: &Image,
+    threads: usize,
+    (scene, stage, alpha): (&Scene, Stage, f64),
+) -> Result<Errors, ViewerError> {
+    let examination = Examination::new(scene, stage, alpha, image, TOLERANCE, threads)?;
+    let diagnosis = examination.diagnosis()?;
+    let pairs = diagnosis.verdicts.iter().zip(examination.decisions());
+    Ok(Errors {
+        wrong: pairs
+            .map(|(&verdict, &truth)| Wrong::of_verdict(verdict, truth))
+            .collect(),
+        hints: Vec::new(),
+        truth: examination.truth().clone(),
+        image: image.clone(),
+    })
+}
+
+impl Errors {
+    /// In false colours, and counted.
+    fn compared(mut self, frame: Frame) -> Compared {
+        let (mut misrounded, mut largest) = (0, 0);
+        let pixels = self.image.samples_mut().chunks_exact_mut(3);
+        let true_pixels = self.truth.samples().chunks_exact(3);
+        for ((samples, truth), wrong) in pixels.zip(true_pixels).zip(&self.wrong) {
+            let errors = [0, 1, 2].map(|channel| steps(samples[channel], truth[channel]));
+            misrounded += errors.iter().filter(|&&error| error != Some(0)).count();
+            // A NaN in the place of a number is worse than any number.
+            let worst = match errors {
+                [Some(red), Some(green), Some(blue)] => Some(red.max(green).max(blue)),
+                _ => None,
+            };
+            let color = wrong.map_or_else(
+                || {
+                    largest = largest.max(worst.unwrap_or(u32::MAX));
+                    error_color(worst)
+                },
+                Wrong::color,
+            );
+            for (sample, byte) in samples.iter_mut().zip(color) {
+                *sample = f32::from(byte) / 255.0;
+            }
+        }
+        let count = |kind| self.wrong.iter().filter(|&&one| one == Some(kind)).count();
+        let counts = Wrong::ALL.map(|kind| (kind, count(kind)));
+        Compared {
+            frame,
+            rings: rings(&self.wrong, self.image.size() as usize),
+            image: Arc::new(self.image),
+            wrong: counts.into_iter().filter(|(_, count)| *count > 0).collect(),
+            misrounded,
+            largest,
+            hints: self.hints,
+        }
+    }
+}
+
 /// The pixels of `wrong`, rows of `size`, that are few in their tile.
-fn rings(wrong: &[bool], size: usize) -> Vec<UVec2> {
+fn rings(wrong: &[Option<Wrong>], size: usize) -> Vec<(UVec2, Wrong)> {
     let tiles = size.div_ceil(TILE);
     let mut found = vec![Vec::new(); tiles * tiles];
-    for (number, _) in wrong.iter().enumerate().filter(|(_, wrong)| **wrong) {
+    for (number, wrong) in wrong.iter().enumerate() {
+        let Some(wrong) = *wrong else { continue };
         let (column, row) = (number % size, number / size);
         let tile = &mut found[row / TILE * tiles + column / TILE];
         if tile.len() <= FEW {
-            tile.push(UVec2::new(column as u32, row as u32));
+            tile.push((UVec2::new(column as u32, row as u32), wrong));
         }
     }
     let few = found.into_iter().filter(|tile| tile.len() <= FEW);
@@ -222,16 +290,17 @@ mod tests {
     #[test]
     fn a_comparison_says_how_far_it_is() {
         let frame = Frame {
+            scene: Arc::new(Scene::builtin()),
             stage: Stage::Reflection,
             alpha: 0.0,
-            kernel: Kernel::Fast,
+            renderer: Renderer::Kernel(Kernel::Fast),
         };
         let mut errors = ErrorView::since(Instant::now());
         let mut begun = Vec::new();
-        let compared = compare(frame, |kernel| {
+        let compared = compare_kernel(Kernel::Fast, |kernel| {
             let progress = Progress::default();
             errors.tracing = Some((kernel, progress.clone()));
-            begun.push(errors.text(frame, 40));
+            begun.push(errors.text(&frame, 40));
             progress.add(40);
             let (mut image, mut decisions) = (Image::new(40)?, vec![Decision::Background; 1600]);
             // One pixel that is decided wrongly, and one that is three steps off.
@@ -242,19 +311,21 @@ mod tests {
             }
             Ok((image, decisions))
         });
-        let compared = compared.unwrap();
+        let compared = compared.unwrap().compared(frame.clone());
         assert!(begun[0].starts_with("comparing fast, tracing fast 0 % … "));
         assert!(begun[1].starts_with("comparing fast, tracing reference 0 % … "));
         assert!(
             errors
-                .text(frame, 40)
+                .text(&frame, 40)
                 .starts_with("comparing fast, tracing reference 100 % … ")
         );
+        assert_eq!(compared.wrong, [(Wrong::Solid, 1)]);
+        assert_eq!(compared.rings, [(UVec2::new(5, 0), Wrong::Solid)]);
         errors.done = Some(compared);
         assert_eq!(
-            errors.text(frame, 40),
-            "fast against reference\n\
-             wrong pixels: 1 (green, single ones ringed)\n\
+            errors.text(&frame, 40),
+            "fast against the truth\n\
+             wrong pixels: 1, single ones ringed\n\
              misrounded samples: 2, at most 3 f32 steps off"
         );
     }
@@ -262,12 +333,12 @@ mod tests {
     #[test]
     fn single_wrong_pixels_are_ringed_and_crowds_are_not() {
         let size = 40;
-        let mut wrong = vec![false; size * size];
-        wrong[3 * size + 39] = true;
+        let mut wrong = vec![None; size * size];
+        wrong[3 * size + 39] = Some(Wrong::Face);
         for column in 0..12 {
-            wrong[20 * size + column] = true;
+            wrong[20 * size + column] = Some(Wrong::Solid);
         }
-        assert_eq!(rings(&wrong, size), [UVec2::new(39, 3)]);
+        assert_eq!(rings(&wrong, size), [(UVec2::new(39, 3), Wrong::Face)]);
         assert!(rings(&[], 0).is_empty());
     }
 }

@@ -107,19 +107,24 @@ impl Content {
         }
     }
 
-    /// The frame whose errors are to be shown.
-    pub(super) fn frame_to_compare(&self) -> Option<Frame> {
-        match self {
-            Content::Nothing { .. } | Content::Picture(_) => None,
-            Content::Errors(picture, _) => Some(picture.traced.frame),
-        }
+    /// The metadata of the picture that was traced last, and its samples, unless they were given
+    /// back.
+    pub(super) fn shown(&self) -> Option<(&Traced, Option<&Arc<Image>>)> {
+        let picture = self.picture()?;
+        Some((&picture.traced, picture.samples.as_ref()))
+    }
+
+    /// The frame whose errors are to be shown, and its picture.
+    pub(super) fn to_compare(&self) -> Option<(&Frame, Option<&Arc<Image>>)> {
+        let (traced, image) = self.shown().filter(|_| self.shows_errors())?;
+        Some((&traced.frame, image))
     }
 
     /// Whether errors are to be shown that are not known yet.
     pub(super) fn is_comparing(&self) -> bool {
         match self {
             Content::Nothing { .. } | Content::Picture(_) => false,
-            Content::Errors(picture, errors) => errors.are_awaited(picture.traced.frame),
+            Content::Errors(picture, errors) => errors.are_awaited(&picture.traced.frame),
         }
     }
 
@@ -186,11 +191,11 @@ impl Content {
     /// Gives the samples back, to be traced over by `next`, where the texture holds them: not those
     /// of a slow picture, which may be wanted again before the next one is there, and not those of
     /// `next` itself, which would not be traced again.
-    pub(super) fn give_back(&mut self, next: Frame) {
+    pub(super) fn give_back(&mut self, next: &Frame) {
         if let Content::Picture(picture) = self
             && let Texture::Current = picture.texture
             && picture.traced.time < SOON
-            && picture.traced.frame != next
+            && picture.traced.frame != *next
         {
             picture.samples = None;
         }
@@ -250,19 +255,24 @@ impl Content {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 mod tests {
+    use std::sync::LazyLock;
+
     use super::*;
-    use crate::Stage;
     use crate::random::Random;
     use crate::tracer::InDoubt;
+    use crate::viewer::renderer::Renderer;
+    use crate::{Scene, Stage};
 
     const SIZE: u32 = 6;
 
     fn traced(number: u64, changed: Range<u32>) -> Traced {
+        static SCENE: LazyLock<Arc<Scene>> = LazyLock::new(|| Arc::new(Scene::builtin()));
         Traced {
             frame: Frame {
+                scene: SCENE.clone(),
                 stage: Stage::Animation,
                 alpha: number as f64,
-                kernel: Kernel::Exact,
+                renderer: Renderer::Kernel(Kernel::Exact),
             },
             number,
             changed,
@@ -282,9 +292,10 @@ mod tests {
             frame,
             image: Arc::new(image(sample)),
             rings: Vec::new(),
-            wrong: 0,
+            wrong: Vec::new(),
             misrounded: 0,
             largest: 0,
+            hints: Vec::new(),
         }
     }
 
@@ -338,15 +349,15 @@ mod tests {
         let next = traced(9, 0..SIZE).frame;
         let mut content = Content::default();
         come(&mut content, 1, 0..SIZE);
-        content.give_back(next);
+        content.give_back(&next);
         assert!(content.samples().is_some(), "not uploaded yet");
         upload(&mut content);
-        content.give_back(traced(1, 0..SIZE).frame);
+        content.give_back(&traced(1, 0..SIZE).frame);
         assert!(
             content.samples().is_some(),
             "there is no other picture next"
         );
-        content.give_back(next);
+        content.give_back(&next);
         assert!(content.samples().is_none() && content.in_texture().is_none());
         assert_eq!(content.redisplay(false, false, false), Redisplay::Draw);
         content.lose_texture();
@@ -358,13 +369,13 @@ mod tests {
         };
         content.picture_came(slow, Arc::new(image(2.0)), Instant::now());
         upload(&mut content);
-        content.give_back(next);
+        content.give_back(&next);
         assert!(content.samples().is_some(), "a slow picture");
 
         content.toggle_errors(Instant::now());
         come(&mut content, 3, 0..SIZE);
         upload(&mut content);
-        content.give_back(next);
+        content.give_back(&next);
         assert!(content.samples().is_some(), "errors are looked at");
     }
 
@@ -372,13 +383,13 @@ mod tests {
     fn errors_are_awaited_for_the_picture_that_is_shown() {
         let mut content = Content::default();
         content.toggle_errors(Instant::now());
-        assert!(content.shows_errors() && content.frame_to_compare().is_none());
+        assert!(content.shows_errors() && content.to_compare().is_none());
         come(&mut content, 1, 0..SIZE);
         let first = traced(1, 0..SIZE).frame;
-        assert_eq!(content.frame_to_compare(), Some(first));
+        assert_eq!(content.to_compare().map(|(frame, _)| frame), Some(&first));
         assert_eq!(upload(&mut content), Some((1.0, 0..SIZE)));
         assert!(content.is_comparing());
-        content.comparison_came(compared(first, 0.5));
+        content.comparison_came(compared(first.clone(), 0.5));
         assert!(!content.is_comparing());
         assert_eq!(upload(&mut content), Some((0.5, 0..SIZE)));
         come(&mut content, 2, 2..3);
@@ -427,13 +438,13 @@ mod tests {
                     errors = None;
                 }
                 3 => {
-                    if let Some(frame) = content.frame_to_compare() {
-                        let compared = compared(frame, -(number as f32));
+                    if let Some((frame, _)) = content.to_compare() {
+                        let compared = compared(frame.clone(), -(number as f32));
                         errors = Some((*compared.image).clone());
                         content.comparison_came(compared);
                     }
                 }
-                4 => content.give_back(traced(number + 1, 0..SIZE).frame),
+                4 => content.give_back(&traced(number + 1, 0..SIZE).frame),
                 5 if random.below(4) == 0 => {
                     content.lose_texture();
                     texture.fill(f32::NAN);

@@ -1,5 +1,7 @@
 //! What can keep the viewer from its window.
 
+use crate::RenderError;
+use crate::diagnosis::ExaminationError;
 use crate::image::ImageError;
 use crate::screen::ScreenError;
 use crate::tracer::TraceError;
@@ -54,9 +56,15 @@ pub enum ViewerError {
     /// The system has no thread left.
     #[error("no thread can be started to trace on ({0}): end other programs")]
     Thread(std::io::Error),
+    /// The kernel that the viewer opens on does not trace such a scene.
+    #[error("{0}")]
+    Refused(RenderError),
     /// The picture cannot be traced.
     #[error(transparent)]
     Trace(#[from] TraceError),
+    /// The picture cannot be compared with the truth.
+    #[error(transparent)]
+    Examination(#[from] ExaminationError),
 }
 
 /// What an error of winit says, without the place in winit's own source that it puts before it.

@@ -9,12 +9,12 @@ use crate::difference::error_color;
 
 use super::action::{Action, DOES, key_table, mouse_table};
 use super::canvas::TextBox;
-use super::comparison::WRONG;
 use super::layout::Layout;
 use super::lines::{DIM, HEADING, INK, Line, wrap};
 use super::menu::Menu;
 use super::panel::{Scroll, columns, note, panel};
 use super::rect::Rect;
+use super::wrong::Wrong;
 
 /// How long a message stays, and the name of the pixel on which the pointer rests.
 const READING_TIME: Duration = Duration::from_secs(4);
@@ -53,10 +53,14 @@ pub(super) struct HudValues {
     pub(super) pixel: String,
     /// Where the pointer is.
     pub(super) pointer: Option<IVec2>,
+    /// What is said as long as it is so.
+    pub(super) notice: Option<String>,
     /// What the error view says.
     pub(super) errors: Option<String>,
+    /// The kinds of wrong pixels that there are, and how many of each.
+    pub(super) wrong: Vec<(Wrong, usize)>,
     /// The wrong pixels, column and row, that are ringed.
-    pub(super) rings: Vec<UVec2>,
+    pub(super) rings: Vec<(UVec2, Wrong)>,
     /// The rows of the menu that stand for something that is on.
     pub(super) on: Vec<Action>,
 }
@@ -155,6 +159,7 @@ impl Hud {
     ) -> Vec<TextBox> {
         let mut text_boxes = Vec::new();
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
+        let message = message.or(values.notice.as_deref());
         let named = Some(values.pixel.as_str()).filter(|name| !name.is_empty());
         match layout.panel {
             Some(rect) => {
@@ -201,7 +206,7 @@ impl Hud {
         }
         if let Some(errors) = &values.errors {
             let mut text = wrap(errors, columns, 2, INK);
-            text.extend(scale());
+            text.extend(legend(&values.wrong));
             part("Errors", text);
         }
         match &self.text {
@@ -223,9 +228,15 @@ impl Hud {
     }
 }
 
-/// The scale of the error view: a cell for each octave from 1 f32 step to 2²⁴, those without an
-/// error, those that are no number, and wrong decisions.
-fn scale() -> [Line; 5] {
+/// The legend of the error view: the kinds of wrong pixels that there are; then the scale, a cell
+/// for each octave from 1 f32 step to 2²⁴, and the colours of what has no error and of what is no
+/// number.
+fn legend(wrong: &[(Wrong, usize)]) -> Vec<Line> {
+    let swatch = |color, meaning: &str| Line::default().swatch(0, color).text(2, meaning, INK);
+    let kinds = wrong.iter().map(|&(kind, count)| {
+        let meaning = format!("{}: {count}", kind.label());
+        swatch(kind.color(), &meaning)
+    });
     let strip = (0..=24).fold(Line::default(), |line, octave| {
         line.cell(octave, error_color(Some(1 << octave)))
     });
@@ -235,14 +246,12 @@ fn scale() -> [Line; 5] {
         .fold(Line::default(), |line, (column, label)| {
             line.text(column, label, INK)
         });
-    let swatch = |color, meaning| Line::default().swatch(0, color).text(2, meaning, INK);
-    [
-        strip,
-        labels,
-        swatch(error_color(Some(0)), "exact"),
-        swatch(error_color(None), "NaN"),
-        swatch(WRONG, "wrong decision; single ones are ringed"),
-    ]
+    let mut lines: Vec<Line> = kinds.collect();
+    lines.extend([strip, labels, swatch(error_color(Some(0)), "exact")]);
+    if !wrong.iter().any(|(kind, _)| *kind == Wrong::NotANumber) {
+        lines.push(swatch(error_color(None), "NaN"));
+    }
+    lines
 }
 
 /// The ring around a pixel of the picture that is drawn as `square`, `width` pixels wide and

@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::Image;
 use crate::image::display_byte;
 
+use super::renderer::Renderer;
 use super::tracing::Traced;
 use glam::UVec2;
 
@@ -22,7 +23,7 @@ pub(super) struct Times {
 /// frames a second could be traced, and how many are displayed; the pixels in doubt. Lines of a
 /// name and a value.
 pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
-    let frame = traced.frame;
+    let frame = &traced.frame;
     let ms = |time: Duration| format!("{:.2} ms", 1e3 * time.as_secs_f64());
     let rate = 1.0 / traced.time.as_secs_f64().max(1e-9);
     let display = match times.display {
@@ -35,9 +36,13 @@ pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
         in_doubt.double_double + in_doubt.arbitrary,
         in_doubt.arbitrary
     );
+    let kind = match frame.renderer {
+        Renderer::Kernel(_) => "kernel",
+        Renderer::Given(_) => "renderer",
+    };
     let lines = [
         ("stage", frame.stage.to_string()),
-        ("kernel", frame.kernel.name().to_owned()),
+        (kind, frame.renderer.name().to_owned()),
         ("α", format!("{:.3} rad", frame.alpha)),
         ("size", format!("{size} × {size}")),
         ("trace", format!("{}, {rate:.0} fps", ms(traced.time))),
@@ -47,9 +52,13 @@ pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
         ("display", display),
         ("in doubt", doubts),
     ];
+    // A renderer that was given knows no doubt that is known here.
+    let known = |(name, _): &(&str, String)| kind == "kernel" || *name != "in doubt";
     lines
+        .into_iter()
+        .filter(known)
         .map(|(name, value)| format!("{name:13}{value}\n"))
-        .concat()
+        .collect()
 }
 
 /// A pixel by its column and row, its floats and its bytes.

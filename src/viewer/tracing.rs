@@ -1,4 +1,5 @@
-//! Pictures traced, saved and explained on a thread of their own.
+//! Pictures made, saved and explained on threads of their own: one for the kernels, and one for
+//! each renderer that the viewer was given, since that may take its time.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -7,40 +8,54 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
+use crate::diagnosis::{Examination, TOLERANCE};
 use crate::image::{Format, SaveError};
 use crate::tracer::{InDoubt, TraceError};
-use crate::{Image, Kernel, Scene, Stage, Tracer};
+use crate::{Image, Kernel, Render, RenderError, Scene, Stage, Tracer};
 
+use super::renderer::Renderer;
 use super::snapshot;
 use super::worker::Worker;
 use super::{Options, ViewerError};
 
-/// What a picture is of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a picture is of, and what makes it.
+#[derive(Clone, Debug)]
 pub(super) struct Frame {
+    pub(super) scene: Arc<Scene>,
     pub(super) stage: Stage,
     pub(super) alpha: f64,
-    pub(super) kernel: Kernel,
+    pub(super) renderer: Renderer,
 }
 
-/// The metadata of a traced picture.
+impl PartialEq for Frame {
+    /// Scenes that were read one after the other count as different.
+    fn eq(&self, other: &Frame) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && (self.stage, self.alpha) == (other.stage, other.alpha)
+            && self.renderer == other.renderer
+    }
+}
+
+/// The metadata of a picture.
 #[derive(Clone)]
 pub(super) struct Traced {
     pub(super) frame: Frame,
-    /// Pictures are numbered as they are traced.
+    /// The pictures of a thread are numbered as they are made; between the numbers of two threads
+    /// there are gaps.
     pub(super) number: u64,
     /// All rows, from the bottom, that are not as in the picture with the number before.
     pub(super) changed: Range<u32>,
-    /// How long tracing it took.
+    /// How long it took.
     pub(super) time: Duration,
     pub(super) in_doubt: InDoubt,
 }
 
-/// What the thread is asked for.
+/// What a thread is asked for.
 enum Task {
     Trace(Frame),
     Save(Frame, Format),
-    Explain(Frame, UVec2),
+    /// With the picture, where a renderer made it.
+    Explain(Frame, UVec2, Option<Arc<Image>>),
 }
 
 /// What it answers.
@@ -51,181 +66,324 @@ pub(super) enum Reply {
     Saved(Result<PathBuf, SaveError>),
     /// A pixel, worked through.
     Explained(UVec2, String),
-    /// The kernel does not trace such a scene.
-    Refused(Frame, TraceError),
+    /// There is no such picture: the kernel does not trace such a scene, or the renderer failed.
+    Refused(Frame, RenderError),
     /// A failure that no other picture would avoid.
     Failed(ViewerError),
 }
 
-/// A tracer of frames with a pool of pictures to trace them into.
-pub(super) struct FrameTracer {
-    scene: Scene,
-    tracer: Tracer,
-    threads: usize,
-    size: u32,
-    /// The pool: every picture that was handed out, the last one at the end. A picture that nobody
-    /// else holds is traced over.
-    pictures: Vec<Arc<Image>>,
-    /// What the last picture shows; `None` where it was overwritten.
-    last: Option<Traced>,
-    traces: u64,
+/// Why there is no picture.
+enum Failure {
+    Refused(RenderError),
+    Viewer(ViewerError),
 }
 
-impl FrameTracer {
+impl<E: Into<ViewerError>> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        match error.into() {
+            ViewerError::Trace(error @ TraceError::Listing { .. }) => {
+                Failure::Refused(error.into())
+            }
+            error => Failure::Viewer(error),
+        }
+    }
+}
+
+/// What makes the pictures of a thread.
+enum Engine {
+    /// The tracer, with the kernel that was asked for last.
+    Kernels { tracer: Tracer, threads: usize },
+    /// A renderer that the viewer was given, and the edition of its files that it was made with.
+    Given {
+        renderer: Box<dyn Render + Send>,
+        edition: u64,
+    },
+}
+
+/// The rows that were written, and the pixels that were in doubt.
+type Written = (Range<u32>, InDoubt);
+
+impl Engine {
+    /// Makes the picture of `frame` in `image`; where nobody else holds the last picture, that is
+    /// in `image`.
+    fn render(&mut self, frame: &Frame, image: &mut Image) -> Result<Written, Failure> {
+        let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
+        match (self, &frame.renderer) {
+            (Engine::Kernels { tracer, threads }, renderer) => {
+                choose(tracer, kernel_of(renderer), *threads)?;
+                let rows = tracer.retrace(scene, stage, alpha, image)?;
+                Ok((rows, tracer.in_doubt()))
+            }
+            (Engine::Given { renderer, edition }, wanted) => {
+                if let Renderer::Given(given) = wanted
+                    && given.edition != *edition
+                {
+                    *edition = given.edition;
+                    renderer.reload();
+                }
+                let rendered = renderer.render(scene, stage, alpha, image);
+                rendered.map_err(Failure::Refused)?;
+                Ok((0..image.size(), InDoubt::default()))
+            }
+        }
+    }
+}
+
+/// The kernel that explains the pixels of a renderer: that of the truth, if it is none itself.
+fn kernel_of(renderer: &Renderer) -> Kernel {
+    match renderer {
+        Renderer::Kernel(kernel) => *kernel,
+        Renderer::Given(_) => Kernel::Exact,
+    }
+}
+
+/// Makes `tracer` one with this kernel.
+fn choose(tracer: &mut Tracer, kernel: Kernel, threads: usize) -> Result<(), ViewerError> {
+    if tracer.kernel() != kernel {
+        *tracer = Tracer::new(kernel, threads)?;
+    }
+    Ok(())
+}
+
+/// What makes pictures of frames, with a pool of images to make them in.
+pub(super) struct Pictures {
+    engine: Engine,
+    size: u32,
+    /// The pool: every picture that was handed out, the last one at the end. A picture that nobody
+    /// else holds is written over.
+    pool: Vec<Arc<Image>>,
+    /// What the last picture shows; `None` where it was overwritten.
+    last: Option<Traced>,
+    /// The number of the last picture.
+    number: u64,
+}
+
+/// The first number of the pictures of the next thread.
+const NUMBERS: u64 = 1 << 48;
+
+impl Pictures {
+    /// Those of the kernels.
+    ///
     /// # Errors
     /// Where there are no threads, or no memory for the picture.
-    pub(super) fn new(options: &Options) -> Result<FrameTracer, ViewerError> {
-        Ok(FrameTracer {
-            scene: options.scene.clone(),
-            tracer: Tracer::new(options.kernel, options.threads)?,
-            threads: options.threads,
+    pub(super) fn of_kernels(options: &Options) -> Result<Pictures, ViewerError> {
+        let (kernel, threads) = (options.kernel.unwrap_or_default(), options.threads);
+        let tracer = Tracer::new(kernel, threads)?;
+        Ok(Pictures {
+            engine: Engine::Kernels { tracer, threads },
             size: options.size,
-            pictures: vec![Arc::new(Image::new(options.size)?)],
+            // Whether there is memory for it shows before the window opens.
+            pool: vec![Arc::new(Image::new(options.size)?)],
             last: None,
-            traces: 0,
+            number: 0,
         })
     }
 
-    /// The picture of `frame`; the last one is not traced again.
-    fn trace(&mut self, frame: Frame) -> Result<(Traced, Arc<Image>), ViewerError> {
-        if let (Some(last), Some(image)) = (&self.last, self.pictures.last())
-            && last.frame == frame
+    /// Those of the renderer with this number.
+    fn of_renderer(number: usize, renderer: Box<dyn Render + Send>, size: u32) -> Pictures {
+        Pictures {
+            engine: Engine::Given {
+                renderer,
+                edition: 0,
+            },
+            size,
+            pool: Vec::new(),
+            last: None,
+            number: NUMBERS * (number as u64 + 1),
+        }
+    }
+
+    /// The picture of `frame`; the last one is not made again.
+    fn picture(&mut self, frame: &Frame) -> Result<(Traced, Arc<Image>), Failure> {
+        if let (Some(last), Some(image)) = (&self.last, self.pool.last())
+            && last.frame == *frame
         {
             return Ok((last.clone(), image.clone()));
         }
         self.last = None;
-        self.choose(frame.kernel)?;
         let mut image = self.free_picture()?;
         let start = Instant::now();
         // Over another picture than its last one, the tracer writes all rows.
-        let changed = match Arc::get_mut(&mut image) {
-            Some(image) => self
-                .tracer
-                .retrace(&self.scene, frame.stage, frame.alpha, image),
-            None => Ok(0..0),
+        let written = match Arc::get_mut(&mut image) {
+            Some(image) => self.engine.render(frame, image),
+            None => Ok((0..0, InDoubt::default())),
         };
         let time = start.elapsed();
-        self.pictures.push(image.clone());
-        let changed = changed?;
-        self.traces += 1;
+        self.pool.push(image.clone());
+        let (changed, in_doubt) = written?;
+        self.number += 1;
         let traced = Traced {
-            frame,
-            number: self.traces,
+            frame: frame.clone(),
+            number: self.number,
             changed,
             time,
-            in_doubt: self.tracer.in_doubt(),
+            in_doubt,
         };
         self.last = Some(traced.clone());
         Ok((traced, image))
     }
 
-    fn explain(&mut self, frame: Frame, pixel: UVec2) -> Result<String, ViewerError> {
-        self.choose(frame.kernel)?;
-        let Frame { stage, alpha, .. } = frame;
-        Ok(self
-            .tracer
-            .explain(&self.scene, stage, alpha, self.size, pixel.into())?)
+    /// A pixel, worked through by the kernel, or by that of the truth; and what is wrong with the
+    /// pixel in `image`, which a renderer made.
+    fn explain(
+        &mut self,
+        frame: &Frame,
+        pixel: UVec2,
+        image: Option<&Image>,
+    ) -> Result<String, Failure> {
+        let Engine::Kernels { tracer, threads } = &mut self.engine else {
+            return Ok(String::new());
+        };
+        choose(tracer, kernel_of(&frame.renderer), *threads)?;
+        let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
+        let mut text = tracer.explain(scene, stage, alpha, self.size, pixel.into())?;
+        if let Some(image) = image {
+            let examination = Examination::new(scene, stage, alpha, image, TOLERANCE, *threads)?;
+            if let Some(diagnosis) = examination.pixel(pixel.x, pixel.y) {
+                text += &diagnosis.to_string();
+            }
+        }
+        Ok(text)
     }
 
-    fn choose(&mut self, kernel: Kernel) -> Result<(), ViewerError> {
-        if self.tracer.kernel() != kernel {
-            self.tracer = Tracer::new(kernel, self.threads)?;
-        }
-        Ok(())
+    fn answer(&mut self, task: Task) -> Reply {
+        let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, ..)) = &task;
+        let answer = match &task {
+            Task::Trace(_) => self
+                .picture(frame)
+                .map(|(traced, image)| Reply::Traced(traced, image)),
+            Task::Save(_, format) => self
+                .picture(frame)
+                .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, *format))),
+            Task::Explain(_, pixel, image) => self
+                .explain(frame, *pixel, image.as_deref())
+                .map(|text| Reply::Explained(*pixel, text)),
+        };
+        answer.unwrap_or_else(|failure| match failure {
+            Failure::Refused(reason) => Reply::Refused(frame.clone(), reason),
+            Failure::Viewer(error) => Reply::Failed(error),
+        })
     }
 
     /// A picture that nobody else holds, taken out of the pool: the last one if possible, or else a
     /// new one.
     fn free_picture(&mut self) -> Result<Arc<Image>, ViewerError> {
         let free = self
-            .pictures
+            .pool
             .iter_mut()
             .rposition(|picture| Arc::get_mut(picture).is_some());
         Ok(match free {
-            Some(free) => self.pictures.remove(free),
+            Some(free) => self.pool.remove(free),
             None => Arc::new(Image::new(self.size)?),
         })
     }
 }
 
-/// The thread that traces.
+/// The threads.
 pub(super) struct Tracing {
-    worker: Worker<Task, (u64, Reply)>,
-    /// The frame that was requested last.
-    requested: Option<Frame>,
-    /// Pictures traced so far.
-    pub(super) traces: u64,
+    /// The kernels' thread, then those of the renderers. An answer comes with the number of
+    /// pictures that the thread has made so far.
+    workers: Vec<Worker<Task, (u64, Reply)>>,
+    /// How many pictures each has made.
+    made: Vec<u64>,
+    /// The frame that was requested last, and when.
+    requested: Option<(Frame, Instant)>,
+    /// That there is no picture of it is known.
+    is_refused: bool,
 }
 
 impl Tracing {
-    /// Starts the thread; `wake` is called there when there is a reply.
+    /// Starts the threads; `wake` is called there when there is a reply.
     ///
     /// # Errors
     /// Where the system has no thread left.
     pub(super) fn start(
-        mut frame_tracer: FrameTracer,
-        wake: impl Fn() + Send + 'static,
+        of_kernels: Pictures,
+        renderers: Vec<Box<dyn Render + Send>>,
+        wake: impl Fn() + Clone + Send + 'static,
     ) -> Result<Tracing, ViewerError> {
-        let worker = Worker::start("tracing", wake, move |task, reply| {
-            let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, _)) = task;
-            let answer = match task {
-                Task::Trace(_) => frame_tracer
-                    .trace(frame)
-                    .map(|(traced, image)| Reply::Traced(traced, image)),
-                Task::Save(_, format) => frame_tracer
-                    .trace(frame)
-                    .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, format))),
-                Task::Explain(_, pixel) => frame_tracer
-                    .explain(frame, pixel)
-                    .map(|text| Reply::Explained(pixel, text)),
-            };
-            let answer = answer.unwrap_or_else(|error| match error {
-                ViewerError::Trace(error @ TraceError::Listing { .. }) => {
-                    Reply::Refused(frame, error)
-                }
-                error => Reply::Failed(error),
-            });
-            reply((frame_tracer.traces, answer));
-        })
-        .map_err(ViewerError::Thread)?;
+        let size = of_kernels.size;
+        let mut all = vec![of_kernels];
+        let given = renderers.into_iter().enumerate();
+        all.extend(given.map(|(number, renderer)| Pictures::of_renderer(number, renderer, size)));
+        let made = vec![0; all.len()];
+        let workers = all.into_iter().map(|mut pictures| {
+            let first = pictures.number;
+            Worker::start("tracing", wake.clone(), move |task, reply| {
+                let answer = pictures.answer(task);
+                reply((pictures.number - first, answer));
+            })
+        });
+        let workers = workers.collect::<Result<_, _>>();
         Ok(Tracing {
-            worker,
+            workers: workers.map_err(ViewerError::Thread)?,
+            made,
             requested: None,
-            traces: 0,
+            is_refused: false,
         })
+    }
+
+    /// The thread that makes the pictures of `renderer`.
+    fn worker(&self, renderer: &Renderer) -> &Worker<Task, (u64, Reply)> {
+        match renderer {
+            Renderer::Kernel(_) => &self.workers[0],
+            Renderer::Given(given) => &self.workers[1 + given.number],
+        }
     }
 
     /// Requests the picture of `frame`, unless it was requested last.
     pub(super) fn request(&mut self, frame: Frame) {
-        if self.requested != Some(frame) {
-            self.requested = Some(frame);
-            self.worker.request(Task::Trace(frame));
+        if self.requested.as_ref().map(|(last, _)| last) != Some(&frame) {
+            let task = Task::Trace(frame.clone());
+            self.worker(&frame.renderer).request(task);
+            self.requested = Some((frame, Instant::now()));
+            self.is_refused = false;
         }
     }
 
-    /// Whether a picture was requested that is not `shown`.
-    pub(super) fn is_behind(&self, shown: Option<Frame>) -> bool {
-        self.requested != shown
+    /// There is no picture of `frame`; whether it was requested last.
+    pub(super) fn refuse(&mut self, frame: &Frame) -> bool {
+        let is_last = self.requested.as_ref().map(|(last, _)| last) == Some(frame);
+        self.is_refused |= is_last;
+        is_last
+    }
+
+    /// For how long a picture has been requested that is not `shown` and may still come.
+    pub(super) fn behind(&self, shown: Option<&Frame>) -> Option<Duration> {
+        let (frame, since) = self.requested.as_ref()?;
+        (Some(frame) != shown && !self.is_refused).then(|| since.elapsed())
     }
 
     /// Has the picture of `frame` saved.
     pub(super) fn save(&self, frame: Frame, format: Format) {
-        self.worker.enqueue(Task::Save(frame, format));
+        let worker = self.worker(&frame.renderer);
+        worker.enqueue(Task::Save(frame, format));
     }
 
-    /// Has a pixel of `frame`, column and row, worked through.
-    pub(super) fn explain(&self, frame: Frame, pixel: UVec2) {
-        self.worker.enqueue(Task::Explain(frame, pixel));
+    /// Has a pixel of `frame`, column and row, worked through, by the kernels' thread, which no
+    /// renderer keeps waiting; `image` is its picture.
+    pub(super) fn explain(&self, frame: Frame, pixel: UVec2, image: Option<Arc<Image>>) {
+        let image = image.filter(|_| matches!(frame.renderer, Renderer::Given(_)));
+        self.workers[0].enqueue(Task::Explain(frame, pixel, image));
     }
 
     pub(super) fn reply(&mut self) -> Option<Reply> {
-        let (traces, reply) = self.worker.reply()?;
-        self.traces = traces;
+        let replies = self.workers.iter().map(Worker::reply);
+        let (number, (made, reply)) = replies
+            .enumerate()
+            .find_map(|(number, reply)| Some((number, reply?)))?;
+        self.made[number] = made;
         Some(reply)
+    }
+
+    /// How many pictures were made so far.
+    pub(super) fn made(&self) -> u64 {
+        self.made.iter().sum()
     }
 
     /// Waits for the queued tasks, and gives the last replies.
     pub(super) fn finish(self) -> impl Iterator<Item = Reply> {
-        self.worker.finish().into_iter().map(|(_, reply)| reply)
+        let answers = self.workers.into_iter().flat_map(Worker::finish);
+        answers.map(|(_, reply)| reply)
     }
 }

@@ -27,7 +27,7 @@ pub(super) enum Watched {
 /// What has changed.
 pub(super) enum Change {
     /// The scene, or why there is none.
-    Scene(Result<Scene, SceneFileError>),
+    Scene(Box<Result<Scene, SceneFileError>>),
     /// A file of the renderer of this number.
     Renderer(usize),
 }
@@ -153,7 +153,7 @@ impl File {
         }
         self.used = now;
         match &self.watched {
-            Watched::Scene(path) => Some(Change::Scene(Scene::from_file(path))),
+            Watched::Scene(path) => Some(Change::Scene(Box::new(Scene::from_file(path)))),
             // A renderer without its file still makes pictures: it is running.
             Watched::Renderer(number, _) => {
                 self.used.is_some().then_some(Change::Renderer(*number))
@@ -170,6 +170,15 @@ mod tests {
     const BALL: &str =
         "[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\ncolor = [1.0, 0.5, 0.0]\n";
 
+    /// The scene of a change that is one of the scene.
+    fn scene_of(change: Option<Change>) -> Result<Scene, SceneFileError> {
+        let scene = change.and_then(|change| match change {
+            Change::Scene(scene) => Some(*scene),
+            Change::Renderer(_) => None,
+        });
+        scene.unwrap()
+    }
+
     #[test]
     fn a_file_is_used_once_it_stays_as_it_is() {
         let folder = tempfile::tempdir().unwrap();
@@ -182,9 +191,7 @@ mod tests {
             fs::write(&path, text).unwrap();
             assert!(file.look().is_none());
         }
-        let Some(Change::Scene(Ok(scene))) = file.look() else {
-            panic!("the scene has changed");
-        };
+        let scene = scene_of(file.look()).unwrap();
         assert_eq!(scene.spheres().len(), 2);
         assert!(file.look().is_none());
         // As editors do that write another file first; it is refused.
@@ -192,9 +199,7 @@ mod tests {
         fs::write(&other, BALL.replace("0.5\n", "0.0\n").repeat(2)).unwrap();
         fs::rename(&other, &path).unwrap();
         assert!(file.look().is_none());
-        let Some(Change::Scene(Err(error))) = file.look() else {
-            panic!("the scene has changed");
-        };
+        let error = scene_of(file.look()).unwrap_err();
         assert!(
             error.to_string().contains("line 3: sphere[0].radius"),
             "{error}"
@@ -202,13 +207,11 @@ mod tests {
         // It goes, and comes again.
         fs::remove_file(&path).unwrap();
         assert!(file.look().is_none());
-        assert!(matches!(
-            file.look(),
-            Some(Change::Scene(Err(SceneFileError::Read { .. })))
-        ));
+        let error = scene_of(file.look()).unwrap_err();
+        assert!(matches!(error, SceneFileError::Read { .. }));
         fs::write(&path, BALL).unwrap();
         assert!(file.look().is_none());
-        assert!(matches!(file.look(), Some(Change::Scene(Ok(_)))));
+        assert!(scene_of(file.look()).is_ok());
     }
 
     #[test]
@@ -248,6 +251,6 @@ mod tests {
         assert!(wakes.recv_timeout(5 * PERIOD).is_err());
         watch.hold(false);
         wakes.recv_timeout(Duration::from_secs(10)).unwrap();
-        assert!(matches!(watch.change(), Some(Change::Scene(Ok(_)))));
+        assert!(scene_of(watch.change()).is_ok());
     }
 }

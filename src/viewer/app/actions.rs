@@ -5,9 +5,9 @@ use std::time::Instant;
 use winit::event_loop::ActiveEventLoop;
 
 use super::App;
+use crate::Stage;
 use crate::image::Format;
 use crate::viewer::action::Action;
-use crate::{Kernel, Stage};
 
 /// α turned by an arrow key, in radians.
 const NUDGE: f64 = 0.05;
@@ -42,7 +42,7 @@ impl App<'_> {
             Action::SavePng => self.save(Format::Png),
             Action::SaveExr => self.save(Format::Exr),
             Action::Errors => self.toggle_errors(),
-            Action::NextKernel => self.next_kernel(),
+            Action::NextKernel => self.renderers.show_next(),
             Action::Information => {
                 self.hud.information = !self.hud.information;
                 self.touch();
@@ -76,7 +76,7 @@ impl App<'_> {
         if self.playing() {
             self.ask_for_redraw();
         } else {
-            self.tracing.request(self.wanted());
+            self.request();
         }
     }
 
@@ -89,14 +89,8 @@ impl App<'_> {
         self.touch();
     }
 
-    pub(super) fn next_kernel(&mut self) {
-        let kernels = Kernel::ALL.iter().cycle();
-        let next = kernels.skip_while(|&&kernel| kernel != self.kernel).nth(1);
-        self.kernel = next.copied().unwrap_or_default();
-    }
-
     /// Pauses the animation if it is on.
-    fn stop(&mut self) {
+    pub(super) fn stop(&mut self) {
         if self.stage == Stage::Animation {
             self.playback.pause();
         }
@@ -105,7 +99,7 @@ impl App<'_> {
     fn save(&self, format: Format) {
         let frame = match self.content.traced() {
             // What a person sees is what is saved, although the next picture is on its way.
-            Some(traced) if self.playing() => traced.frame,
+            Some(traced) if self.playing() => traced.frame.clone(),
             _ => self.wanted(),
         };
         self.tracing.save(frame, format);

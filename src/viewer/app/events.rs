@@ -192,10 +192,11 @@ impl App<'_> {
                 }
             }
             Gesture::Click { at } => {
-                if let (Some(pixel), Some(traced)) =
-                    (gl_window.picture_pixel(at), self.content.traced())
+                if let (Some(pixel), Some((traced, image))) =
+                    (gl_window.picture_pixel(at), self.content.shown())
                 {
-                    self.tracing.explain(traced.frame, pixel);
+                    self.tracing
+                        .explain(traced.frame.clone(), pixel, image.cloned());
                 }
                 return;
             }

@@ -3,7 +3,6 @@
 use super::App;
 use crate::Stage;
 use crate::viewer::action::Action;
-use crate::viewer::comparison::WRONG;
 use crate::viewer::content::Content;
 use crate::viewer::hud::{HudValues, ring};
 use crate::viewer::information::{information, name_pixel};
@@ -15,7 +14,10 @@ impl App<'_> {
         let (Some(gl_window), Some(traced)) = (&self.gl_window, self.content.traced()) else {
             return HudValues::default();
         };
-        let mut values = HudValues::default();
+        let mut values = HudValues {
+            notice: self.notice(),
+            ..HudValues::default()
+        };
         if self.hud.information {
             values.information = information(traced, self.size, self.times);
         }
@@ -30,9 +32,11 @@ impl App<'_> {
             values.pointer = Some(gl_window.place_of(place));
         }
         if let Content::Errors(_, errors) = &self.content {
-            values.errors = Some(errors.text(traced.frame, self.size));
-            let rings = errors.done.iter().flat_map(|compared| &compared.rings);
-            values.rings.extend(rings);
+            values.errors = Some(errors.text(&traced.frame, self.size));
+            if let Some(compared) = &errors.done {
+                values.rings.extend(&compared.rings);
+                values.wrong.extend(&compared.wrong);
+            }
         }
         values.on.push(Action::Stage(self.stage));
         for (on, action) in [
@@ -56,9 +60,9 @@ impl App<'_> {
         };
         // As wide as a stroke of the characters.
         let line = (gl_window.cell().x / 7).max(1) as i32;
-        let rings = values.rings.iter().flat_map(|&pixel| {
+        let rings = values.rings.iter().flat_map(|&(pixel, wrong)| {
             let bars = ring(gl_window.square(pixel), 4 * line, line);
-            bars.map(|bar| (bar, WRONG))
+            bars.map(|bar| (bar, wrong.color()))
         });
         let inspected = self.hud.inspected().into_iter().flat_map(|(pixel, _)| {
             let square = gl_window.square(pixel);

@@ -1,0 +1,229 @@
+//! Other programs in the place of a kernel, and files that change while the viewer is seen.
+
+use std::fs;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use firsthit::scene::BUILTIN_TOML;
+use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+
+use super::WATCH;
+use super::pixels::{letterboxed, wait_to_show};
+use super::program::wait_for;
+use super::session::Session;
+use super::xvfb::Xvfb;
+
+const SIZE: u32 = 300;
+
+/// A program that answers with pictures of one grey, each after some seconds.
+fn flat(grey: f64, seconds: f64) -> String {
+    format!(
+        "import json, struct, sys, time\n\
+         for line in sys.stdin:\n    \
+             samples = 3 * json.loads(line)['size'] ** 2\n    \
+             time.sleep({seconds})\n    \
+             sys.stdout.buffer.write(struct.pack('<f', {grey}) * samples)\n    \
+             sys.stdout.buffer.flush()\n"
+    )
+}
+
+/// The viewer with a Python program of this text, and its path.
+fn view(text: &str, arguments: &[&str]) -> Option<(Session, std::path::PathBuf)> {
+    let xvfb = Xvfb::start(&[])?;
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!(
+        "flat-{}-{:?}.py",
+        std::process::id(),
+        thread::current().id()
+    ));
+    fs::write(&path, text).unwrap();
+    let command = format!("python3 '{}'", path.display());
+    let all = ["view", "--size", "300", "--program", &command];
+    let session = Session::on(xvfb, &[&all, arguments].concat(), &[]);
+    Some((session, path))
+}
+
+/// Waits until the window shows one grey, at least in the upper half.
+#[track_caller]
+fn shows_grey(session: &Session, grey: f32) {
+    let mut picture = Image::new(SIZE).unwrap();
+    picture.samples_mut().fill(grey);
+    wait_for(&format!("a grey of {grey}"), || {
+        let shown = session.pixels()?;
+        let expected = letterboxed(&picture, shown.width, shown.height);
+        (shown.differences(&expected, 0..shown.height / 2) == 0).then_some(())
+    });
+}
+
+#[test]
+fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
+    let Some((mut session, path)) = view(&flat(0.5, 0.0), &["--stage", "6"]) else {
+        return;
+    };
+    session.titled(&["firsthit — 6 Reflection — python3 flat-"]);
+    shows_grey(&session, 0.5);
+    session.type_keys("k");
+    session.titled(&["— exact —"]);
+    session.shows(SIZE, Stage::Reflection, 0.0);
+    for _ in Kernel::ALL {
+        session.type_keys("k");
+    }
+    session.titled(&["— python3 flat-"]);
+    shows_grey(&session, 0.5);
+    fs::write(&path, flat(0.25, 0.0)).unwrap();
+    shows_grey(&session, 0.25);
+    // One that fails leaves the last picture, and says why, until it is mended.
+    fs::write(&path, "raise SystemExit(3)").unwrap();
+    thread::sleep(WATCH);
+    shows_grey(&session, 0.25);
+    session.screenshot("viewer-failed-program.png");
+    // It is not started again and again.
+    session.program.sleeps();
+    fs::write(&path, flat(0.75, 0.0)).unwrap();
+    shows_grey(&session, 0.75);
+    session.type_keys("q");
+    let (status, errors) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+    let lines: Vec<&str> = errors.lines().collect();
+    let [line] = lines[..] else {
+        panic!("{errors}");
+    };
+    assert!(line.starts_with("firsthit: python3 flat-"), "{line}");
+    assert!(line.contains("ended with status 3"), "{line}");
+}
+
+#[test]
+fn a_program_that_fails_from_the_start_is_shown_once_it_is_mended() {
+    let Some((mut session, path)) = view("print('hello')", &["--stage", "2"]) else {
+        return;
+    };
+    shows_grey(&session, 0.0);
+    fs::write(&path, flat(0.5, 0.0)).unwrap();
+    shows_grey(&session, 0.5);
+    session.type_keys("q");
+    let (status, _) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+}
+
+#[test]
+fn a_slow_program_keeps_nobody_waiting() {
+    let slow = flat(0.5, 3.0);
+    let Some((mut session, _)) = view(&slow, &["--stage", "6", "--kernel", "exact"]) else {
+        return;
+    };
+    session.shows(SIZE, Stage::Reflection, 0.0);
+    for _ in Kernel::ALL {
+        session.type_keys("k");
+    }
+    // Title and stage change at once, although the last kernel's picture is all that there is.
+    session.titled(&["6 Reflection — python3"]);
+    let start = Instant::now();
+    session.type_keys("5");
+    session.titled(&["5 Shadow — python3"]);
+    session.type_keys("k");
+    session.titled(&["5 Shadow — exact"]);
+    session.shows(SIZE, Stage::Shadow, 0.0);
+    let time = start.elapsed();
+    assert!(time < Duration::from_secs(3), "{time:?}");
+    for _ in Kernel::ALL {
+        session.type_keys("k");
+    }
+    // The picture of the stage that was left is not shown, or for no longer than the note.
+    session.titled(&["5 Shadow — python3"]);
+    shows_grey(&session, 0.5);
+    // It is left at once, too.
+    session.type_keys("4");
+    session.titled(&["4 Shading — python3"]);
+    let start = Instant::now();
+    session.type_keys("q");
+    session.program.left();
+    let time = start.elapsed();
+    assert!(time < Duration::from_secs(3), "{time:?}");
+}
+
+#[test]
+fn the_error_view_and_the_inspector_say_what_a_program_shows() {
+    // As the surface in shadow: the ambient light.
+    let Some((mut session, _)) = view(&flat(0.3, 0.0), &["--stage", "5"]) else {
+        return;
+    };
+    shows_grey(&session, 0.3);
+    // The corner shows the background, which is neither.
+    session.point(1, 1);
+    session.click(super::session::LEFT_BUTTON);
+    let verdict = "verdict      shows the surface in shadow, where the background is seen";
+    assert_eq!(session.program.line("verdict"), verdict);
+    assert!(session.program.line("yours").contains("0.3 0.3 0.3"));
+    session.type_keys("e");
+    // Another thing is seen than there is: green.
+    wait_for("wrong pixels", || {
+        (session.pixels()?.count([0, 255, 0]) > 100).then_some(())
+    });
+    session.screenshot("viewer-program-errors.png");
+    session.type_keys("q");
+    session.program.left();
+}
+
+/// The built-in scene with spheres of another size.
+fn scene(radius: &str) -> String {
+    BUILTIN_TOML.replace("0.34375", radius)
+}
+
+#[track_caller]
+fn shows_scene(session: &Session, text: &str) {
+    let mut picture = Image::new(SIZE).unwrap();
+    let mut tracer = Tracer::new(Kernel::Exact, 1).unwrap();
+    let scene = Scene::from_toml(text).unwrap();
+    tracer
+        .trace(&scene, Stage::Shading, 0.0, &mut picture)
+        .unwrap();
+    wait_to_show(
+        || session.pixels(),
+        |width, height| letterboxed(&picture, width, height),
+    );
+}
+
+#[test]
+fn a_changed_scene_file_is_shown_and_a_refused_one_leaves_the_last_scene() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("0.34375")).unwrap();
+    let file = path.to_str().unwrap();
+    let arguments = ["view", "--size", "300", "--stage", "4", "--scene", file];
+    let mut session = Session::on(xvfb, &arguments, &[]);
+    shows_scene(&session, &scene("0.34375"));
+    // Half a second is promised; a machine with much else to do is given more.
+    fs::write(&path, scene("0.25")).unwrap();
+    shows_scene(&session, &scene("0.25"));
+    session.program.line("read ");
+    // With a mistake: the picture stays, under the line that says where it is.
+    fs::write(&path, scene("-1.0")).unwrap();
+    thread::sleep(WATCH);
+    session.screenshot("viewer-refused-scene.png");
+    let shown = session.pixels().unwrap();
+    // As some editors do it.
+    let other = folder.path().join("other");
+    fs::write(&other, scene("0.125")).unwrap();
+    fs::rename(&other, &path).unwrap();
+    shows_scene(&session, &scene("0.125"));
+    // The note lay over the picture, and is gone.
+    assert_ne!(
+        shown.differences(&session.pixels().unwrap(), 0..shown.height),
+        0
+    );
+    // An icon looks at nothing; what has changed meanwhile is shown afterwards.
+    session.iconify(true);
+    session.program.sleeps();
+    fs::write(&path, scene("0.25")).unwrap();
+    session.iconify(false);
+    shows_scene(&session, &scene("0.25"));
+    session.type_keys("q");
+    let (status, errors) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+    let refusal = format!("firsthit: {file}: line 25: sphere[0].radius: -1.0 is out of range");
+    assert!(errors.starts_with(&refusal), "{errors}");
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+}
