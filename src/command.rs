@@ -97,6 +97,8 @@ pub(crate) enum Failure {
         nans: u64,
         threshold: u32,
     },
+    #[error("{0}")]
+    TooManyWrong(String),
     #[error("standard output cannot be written: {0}: send it elsewhere")]
     StandardOutput(io::Error),
 }

@@ -22,6 +22,7 @@ mod machine;
 mod measure;
 mod pipeline;
 mod plot;
+mod renderers;
 mod scaling;
 mod table;
 
@@ -29,11 +30,12 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use crate::camera::frame_angle;
+use crate::diagnosis::ExaminationError;
 use crate::image::whole_file::WholeFile;
 use crate::image::{ImageError, SaveError};
 use crate::scene::SceneError;
 use crate::tracer::{Decision, TraceError};
-use crate::{Image, Kernel, Scene, Stage, Tracer};
+use crate::{Image, Kernel, Render, Scene, Stage, Tracer};
 pub use crowd::MAX_CROWD;
 use errors::Errors;
 use hard::HARD_SCENES;
@@ -41,6 +43,7 @@ use machine::{Machine, cores};
 use measure::{Filler, MIN_SAMPLES, Spread, Timing};
 use pipeline::{Frames, Pipeline};
 pub use plot::PlotError;
+use renderers::RendererRow;
 pub use scaling::CROWD_KERNELS;
 use scaling::{Scaling, Series};
 
@@ -108,6 +111,9 @@ pub struct Request {
     /// How many spheres each crowd has, 1 to [`MAX_CROWD`]. The kernels of [`CROWD_KERNELS`] are
     /// timed on the crowds and on the built-in scene, in the first of the stages.
     pub crowds: Vec<u16>,
+    /// How far a sample of another renderer may be from the one that a decision gives,
+    /// [`TOLERANCE`](crate::diagnosis::TOLERANCE) mostly.
+    pub tolerance: f32,
 }
 
 /// How far the measuring is.
@@ -135,6 +141,10 @@ pub struct Report {
     fills: Vec<String>,
     /// Each kernel on each scene in each stage.
     rows: Vec<Row>,
+    /// Each other renderer on each scene in each stage.
+    renderers: Vec<RendererRow>,
+    /// How far a sample of theirs may be from the one that a decision gives.
+    tolerance: f32,
     /// Each kernel on the built-in scene and on each crowd; empty without crowds.
     scalings: Vec<Scaling>,
     /// What it costs to display a frame, once that is measured.
@@ -162,6 +172,19 @@ struct Measured {
     errors: Errors,
 }
 
+/// How wrong a renderer is that is no kernel, on a scene in a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongOfRenderer<'a> {
+    /// What the renderer is called.
+    pub renderer: &'a str,
+    /// The scene's name.
+    pub scene: &'a str,
+    /// The stage.
+    pub stage: Stage,
+    /// Pixels that are neither right nor a rounding, over all frames; or why a picture is missing.
+    pub wrong: Result<u64, &'a str>,
+}
+
 /// A report that cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -172,12 +195,16 @@ pub enum ReportError {
     /// It cannot be traced, for another reason than that a kernel refuses a scene.
     #[error(transparent)]
     Trace(#[from] TraceError),
+    /// A picture cannot be compared with the truth.
+    #[error(transparent)]
+    Examination(#[from] ExaminationError),
     /// There is no crowd of that many spheres.
     #[error("a crowd: {0}")]
     Crowd(#[from] SceneError),
 }
 
-/// Measures the kernels as requested, and tells `progress` before each step.
+/// Measures the kernels as requested, and then other renderers: each makes one picture of each
+/// frame, on each scene in each stage. `progress` is told before each step.
 ///
 /// What it costs to display a frame is measured by [`Report::measure_pipelines`], afterwards:
 /// OpenGL drivers are not ours, and one that ends the process takes nothing along that was not
@@ -187,6 +214,7 @@ pub enum ReportError {
 /// [`ReportError`] where there is no room for the pictures, or no threads, or a crowd is too large.
 pub fn measure(
     request: &Request,
+    renderers: &mut [Box<dyn Render + Send>],
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, ReportError> {
     let threads = match request.threads {
@@ -213,13 +241,15 @@ pub fn measure(
         steps: Steps {
             done: 0,
             of: (angles.len()
-                * (crowds + views * (1 + request.kernels.len() * (1 + 3 * counts.len()))))
+                * (crowds
+                    + views
+                        * (1 + request.kernels.len() * (1 + 3 * counts.len()) + renderers.len())))
                 as u64,
             progress,
         },
         angles,
     };
-    measurement.report(&counts)
+    measurement.report(&counts, renderers)
 }
 
 /// The kernels among those requested that crowds are measured with.
@@ -254,7 +284,11 @@ impl Steps<'_> {
 }
 
 impl Measurement<'_> {
-    fn report(mut self, counts: &[usize]) -> Result<Report, ReportError> {
+    fn report(
+        mut self,
+        counts: &[usize],
+        renderers: &mut [Box<dyn Render + Send>],
+    ) -> Result<Report, ReportError> {
         let mut fillers = Vec::new();
         for &threads in counts {
             fillers.push((threads, Filler::fastest(threads, &mut self.image)?));
@@ -284,6 +318,7 @@ impl Measurement<'_> {
                 }
             }
         }
+        let renderers = self.renderers(renderers, &mut fillers)?;
         let scalings = self.scalings(counts)?;
         Ok(Report {
             machine: Machine::this(),
@@ -292,6 +327,8 @@ impl Measurement<'_> {
             threads: self.threads,
             fills: fillers.iter().map(|(_, filler)| filler.how()).collect(),
             rows,
+            renderers,
+            tolerance: self.request.tolerance,
             scalings,
             pipelines: Vec::new(),
         })
@@ -358,6 +395,36 @@ impl Measurement<'_> {
             )?);
         }
         Ok(timings)
+    }
+
+    /// The other renderers on all scenes in all stages.
+    fn renderers(
+        &mut self,
+        renderers: &mut [Box<dyn Render + Send>],
+        fillers: &mut [(usize, Filler)],
+    ) -> Result<Vec<RendererRow>, ReportError> {
+        let (request, mut rows) = (self.request, Vec::new());
+        let Some((_, filler)) = fillers.first_mut() else {
+            return Ok(rows);
+        };
+        for named in &request.scenes {
+            for &stage in &request.stages {
+                let frames = renderers::Frames {
+                    named,
+                    stage,
+                    angles: &self.angles,
+                    tolerance: request.tolerance,
+                    threads: self.threads,
+                };
+                for renderer in renderers.iter_mut() {
+                    let (renderer, image) = (renderer.as_mut(), &mut self.image);
+                    let mut next = |next: &str| self.steps.next(next, 1);
+                    let row = renderers::measure(renderer, &frames, image, filler, &mut next)?;
+                    rows.push(row);
+                }
+            }
+        }
+        Ok(rows)
     }
 
     /// The times on the built-in scene and on the crowds; nothing where no crowd is requested.
@@ -448,6 +515,19 @@ impl Report {
             self.pipelines = pipeline::measure(frames, watch)?;
         }
         Ok(())
+    }
+
+    /// The pixels that another renderer has wrong, over all frames.
+    pub fn wrong_pixels(&self) -> impl Iterator<Item = WrongOfRenderer<'_>> {
+        self.renderers.iter().map(|row| WrongOfRenderer {
+            renderer: &row.renderer,
+            scene: &row.scene,
+            stage: row.stage,
+            wrong: match &row.measured {
+                Ok(measured) => Ok(measured.summary.wrong()),
+                Err(reason) => Err(reason),
+            },
+        })
     }
 
     /// How many frames a round has.

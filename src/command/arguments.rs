@@ -87,6 +87,11 @@ pub(crate) struct ProgramsArguments {
 }
 
 impl ProgramsArguments {
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.programs.is_empty()
+    }
+
     /// The programs of `--program`, started.
     pub(crate) fn start(&self) -> Result<Vec<Program>, ProgramError> {
         let programs = self.programs.iter();

@@ -5,12 +5,15 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, value_parser};
+use firsthit::diagnosis::TOLERANCE;
 use firsthit::image::MAX_SIZE;
-use firsthit::report::{self, CROWD_KERNELS, MAX_CROWD, NamedScene, Progress, Report, Request};
-use firsthit::{Kernel, Stage};
+use firsthit::report::{
+    self, CROWD_KERNELS, MAX_CROWD, NamedScene, Progress, Report, Request, WrongOfRenderer,
+};
+use firsthit::{Kernel, Render, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{frames, kernel, read_scene, stage};
+use super::arguments::{ProgramsArguments, frames, kernel, read_scene, stage};
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
@@ -22,18 +25,28 @@ pub(crate) struct Arguments {
     /// The hard scenes too: those that the kernels are tested on
     #[arg(long)]
     hard: bool,
-    /// A stage, 1 to 7; may be given several times; 6 if not given
-    #[arg(long = "stage", value_name = "STAGE", value_parser = stage)]
-    stages: Vec<Stage>,
+    /// A stage, 1 to 7, or all from A to B; may be given several times; 6 if not given
+    #[arg(long = "stage", value_name = "STAGE|A..B", value_parser = stages)]
+    stages: Vec<Stages>,
     /// Pixels along a side of the picture
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = value_parser!(u32).range(1..=i64::from(MAX_SIZE)))]
     size: u32,
     /// All frames from A to B, both included
     #[arg(long, value_name = "A..B", default_value = "0..20", value_parser = frames)]
     frames: RangeInclusive<u64>,
-    /// A kernel; may be given several times; exact, fast, double and listing if not given
+    /// A kernel; may be given several times; exact, fast, double and listing if not given, or with
+    /// --program exact alone
     #[arg(long = "kernel", value_name = "NAME", value_parser = kernel())]
     kernels: Vec<Kernel>,
+    #[command(flatten)]
+    programs: ProgramsArguments,
+    /// How many pixels a program may have wrong, over all frames of a stage; more are a failure
+    #[arg(long, value_name = "N", requires = "programs")]
+    max_wrong: Option<u64>,
+    /// How far a program's sample may be from the true one, or from that of another decision; 1/255
+    /// if not given
+    #[arg(long, value_name = "ABS", requires = "programs", value_parser = tolerance)]
+    tolerance: Option<f32>,
     /// The number of threads to measure beside one; one a core if not given
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -50,6 +63,32 @@ pub(crate) struct Arguments {
 
 /// What is measured where no kernel is chosen.
 const KERNELS: [Kernel; 4] = [Kernel::Exact, Kernel::Fast, Kernel::Double, Kernel::Listing];
+
+/// One stage or several.
+#[derive(Clone)]
+struct Stages(Vec<Stage>);
+
+fn stages(text: &str) -> Result<Stages, &'static str> {
+    let Some((first, last)) = text.split_once("..") else {
+        return Ok(Stages(vec![stage(text)?]));
+    };
+    let (first, last) = (stage(first)?, stage(last)?);
+    if first > last {
+        return Err("the first stage comes after the last");
+    }
+    let all = Stage::ALL.into_iter();
+    Ok(Stages(
+        all.filter(|stage| (first..=last).contains(stage)).collect(),
+    ))
+}
+
+fn tolerance(text: &str) -> Result<f32, &'static str> {
+    match text.parse::<f32>() {
+        Ok(tolerance) if tolerance >= 0.0 && tolerance.is_finite() => Ok(tolerance),
+        Ok(_) => Err("a number from 0 on is needed"),
+        Err(_) => Err("not a decimal number"),
+    }
+}
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.plot {
@@ -70,12 +109,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for path in [&arguments.json, &arguments.plot].into_iter().flatten() {
         report::can_save(path)?;
     }
+    let programs = arguments.programs.start()?.into_iter();
+    let renderers = programs.map(|program| -> Box<dyn Render + Send> { Box::new(program) });
+    let mut renderers: Vec<_> = renderers.collect();
     let bar = ProgressBar::new(0).with_style(style());
-    let report = report::measure(&request, &mut |Progress { done, of, next }| {
-        bar.set_length(of);
-        bar.set_position(done);
-        bar.set_message(next.to_owned());
-    });
+    let report = report::measure(
+        &request,
+        &mut renderers,
+        &mut |Progress { done, of, next }| {
+            bar.set_length(of);
+            bar.set_position(done);
+            bar.set_message(next.to_owned());
+        },
+    );
     bar.finish_and_clear();
     let mut report = report?;
     let save = |report: &Report| match &arguments.json {
@@ -89,6 +135,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => Ok(()),
     };
     let saved = save(&report);
+    if let Some(most) = arguments.max_wrong {
+        shown?;
+        plotted?;
+        saved?;
+        return grade(&report, most);
+    }
     let mut watchdog = None;
     report.measure_pipelines(&request, &mut |waits| {
         watchdog = waits.then(|| Watchdog::for_driver(request.size));
@@ -101,12 +153,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     all_shown
 }
 
+/// Fails where a program has more than `most` pixels wrong.
+fn grade(report: &Report, most: u64) -> Result<(), Failure> {
+    let fails = |row: &WrongOfRenderer<'_>| row.wrong.is_err() || row.wrong > Ok(most);
+    let Some(first) = report.wrong_pixels().find(fails) else {
+        return Ok(());
+    };
+    let WrongOfRenderer {
+        renderer,
+        scene,
+        stage,
+        wrong,
+    } = first;
+    Err(Failure::TooManyWrong(match wrong {
+        Ok(wrong) => format!(
+            "{renderer}: stage {stage} of {scene}: {wrong} wrong pixels, more than {most}: see them in `firsthit view --program`, on E"
+        ),
+        Err(reason) => reason.to_owned(),
+    }))
+}
+
 fn plot(report: &Report, path: &Path) -> Result<(), Failure> {
     Ok(report::save(&report.plot()?, path)?)
 }
 
 fn request(arguments: &Arguments) -> Result<Request, Failure> {
-    let kernels = chosen(&arguments.kernels, &KERNELS);
+    let default = match arguments.programs.is_empty() {
+        true => &KERNELS[..],
+        false => &[Kernel::Exact],
+    };
+    let kernels = chosen(&arguments.kernels, default);
     let mut crowds = chosen(&arguments.crowds, &[]);
     crowds.sort_unstable();
     if !crowds.is_empty() && !CROWD_KERNELS.iter().any(|kernel| kernels.contains(kernel)) {
@@ -125,14 +201,17 @@ fn request(arguments: &Arguments) -> Result<Request, Failure> {
     if arguments.hard {
         scenes.extend(NamedScene::hard());
     }
+    let stages = arguments.stages.iter().flat_map(|Stages(stages)| stages);
+    let stages: Vec<Stage> = stages.copied().collect();
     Ok(Request {
         scenes,
-        stages: chosen(&arguments.stages, &[Stage::Reflection]),
+        stages: chosen(&stages, &[Stage::Reflection]),
         kernels,
         size: arguments.size,
         frames: arguments.frames.clone(),
         threads: arguments.threads.map_or(0, NonZeroUsize::get),
         crowds,
+        tolerance: arguments.tolerance.unwrap_or(TOLERANCE),
     })
 }
 

@@ -50,6 +50,20 @@ impl Summary {
         self.wrong_decisions.total() + self.several + self.another_color + self.not_a_number
     }
 
+    /// The counts of two pictures; the worst pixel is that of the first where it has one.
+    #[cfg(feature = "program")]
+    pub(crate) fn and(&self, other: &Summary) -> Summary {
+        Summary {
+            right: self.right + other.right,
+            rounding: self.rounding + other.rounding,
+            wrong_decisions: self.wrong_decisions.and(other.wrong_decisions),
+            several: self.several + other.several,
+            another_color: self.another_color + other.another_color,
+            not_a_number: self.not_a_number + other.not_a_number,
+            worst: self.worst.or(other.worst),
+        }
+    }
+
     pub(super) fn add(&mut self, verdict: Verdict, truth: Decision) {
         match verdict {
             Verdict::Right => self.right += 1,

@@ -57,6 +57,17 @@ impl WrongPixels {
         self.solid + self.face + self.shadow + self.mirror
     }
 
+    /// The counts of two pictures.
+    #[cfg(feature = "program")]
+    pub(crate) fn and(self, other: WrongPixels) -> WrongPixels {
+        WrongPixels {
+            solid: self.solid + other.solid,
+            face: self.face + other.face,
+            shadow: self.shadow + other.shadow,
+            mirror: self.mirror + other.mirror,
+        }
+    }
+
     /// Counts a pixel, if `decision` is wrong.
     pub fn add(&mut self, decision: Decision, truth: Decision) {
         match WrongDecision::of(decision, truth) {

@@ -3,6 +3,8 @@
 use serde::Serialize;
 
 use super::{Machine, Measured, Pipeline, Report, Row, Spread, Timing};
+use crate::diagnosis::Summary;
+use crate::difference::Difference;
 
 /// The whole of it. What cannot be said as a number, an infinite error or what was not measured, is
 /// `null`.
@@ -11,6 +13,7 @@ struct Json<'a> {
     version: u32,
     machine: JsonMachine<'a>,
     rows: Vec<JsonRow<'a>>,
+    renderers: Vec<JsonRenderer<'a>>,
     crowds: Vec<JsonScaling>,
     pipeline: Vec<JsonPipeline<'a>>,
 }
@@ -68,6 +71,43 @@ struct Doubt {
     arbitrary: u64,
 }
 
+/// A renderer that is no kernel.
+#[derive(Serialize)]
+struct JsonRenderer<'a> {
+    scene: &'a str,
+    stage: u8,
+    size: u32,
+    frames: u64,
+    renderer: &'a str,
+    /// Why a picture is missing.
+    failed: Option<&'a str>,
+    tolerance: f32,
+    ms: Option<Spread>,
+    fill_ms: Option<Spread>,
+    fill_ratio: Option<Spread>,
+    wrong_pixels: Option<u64>,
+    wrong_by_kind: Option<WrongOfRenderer>,
+    rounded_pixels: Option<u64>,
+    right_pixels: Option<u64>,
+    misrounded: Option<u64>,
+    nans: Option<u64>,
+    max_ulp: Option<u32>,
+    max_abs: Option<f64>,
+    mean_abs: Option<f64>,
+    eight_bit_differences: Option<u64>,
+}
+
+#[derive(Serialize)]
+struct WrongOfRenderer {
+    solid: u64,
+    face: u64,
+    shadow: u64,
+    mirror: u64,
+    several: u64,
+    another_color: u64,
+    not_a_number: u64,
+}
+
 /// A kernel on a crowd, or on the built-in scene.
 #[derive(Serialize)]
 struct JsonScaling {
@@ -109,11 +149,51 @@ impl Report {
                 simd: first.and_then(|row| Some(row.timings.first()?.simd)),
             },
             rows: rows.collect(),
+            renderers: self.json_renderers(),
             crowds: self.json_scalings(),
             pipeline: self.pipelines.iter().map(json_pipeline).collect(),
         };
         // Writing text and numbers to a string cannot fail.
         serde_json::to_string_pretty(&json).map_or_else(|_| String::new(), |text| text + "\n")
+    }
+
+    fn json_renderers(&self) -> Vec<JsonRenderer<'_>> {
+        let rows = self.renderers.iter().map(|row| {
+            let measured = row.measured.as_ref();
+            let summary = measured.ok().map(|measured| &measured.summary);
+            let difference = measured.ok().map(|measured| &measured.difference);
+            JsonRenderer {
+                scene: &row.scene,
+                stage: row.stage.number(),
+                size: self.size,
+                frames: self.frame_count(),
+                renderer: &row.renderer,
+                failed: measured.err().map(String::as_str),
+                tolerance: self.tolerance,
+                ms: measured.ok().map(|measured| measured.ms),
+                fill_ms: measured.ok().map(|measured| measured.fill_ms),
+                fill_ratio: measured.ok().map(|measured| measured.fill_ratio),
+                wrong_pixels: summary.map(Summary::wrong),
+                wrong_by_kind: summary.map(|summary| WrongOfRenderer {
+                    solid: summary.wrong_decisions.solid,
+                    face: summary.wrong_decisions.face,
+                    shadow: summary.wrong_decisions.shadow,
+                    mirror: summary.wrong_decisions.mirror,
+                    several: summary.several,
+                    another_color: summary.another_color,
+                    not_a_number: summary.not_a_number,
+                }),
+                rounded_pixels: summary.map(|summary| summary.rounding),
+                right_pixels: summary.map(|summary| summary.right),
+                misrounded: difference.map(|difference| difference.wrong),
+                nans: difference.map(|difference| difference.nans[0]),
+                max_ulp: difference.map(|difference| difference.max_steps),
+                max_abs: difference.map(|difference| difference.max_abs),
+                mean_abs: difference.map(Difference::mean_abs),
+                eight_bit_differences: difference.map(|difference| difference.eight_bit),
+            }
+        });
+        rows.collect()
     }
 
     fn json_scalings(&self) -> Vec<JsonScaling> {

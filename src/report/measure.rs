@@ -116,6 +116,15 @@ impl Filler {
         std::hint::black_box(image.samples());
     }
 
+    /// Seconds to fill the picture once.
+    pub(super) fn seconds(&mut self, image: &mut Image) -> f64 {
+        // Twice: the first fill finds the caches that others have left.
+        self.fill(image);
+        let start = Instant::now();
+        self.fill(image);
+        start.elapsed().as_secs_f64().max(1e-9)
+    }
+
     /// How it fills, for people.
     pub(super) fn how(&self) -> String {
         let threads = if self.shared { self.pool.threads() } else { 1 };

@@ -43,7 +43,8 @@ impl Report {
         }
         let _ = write!(
             text,
-            "\ntime a frame\n{times}\nerrors against reference, over all frames\n{errors}{reason}{}",
+            "\ntime a frame\n{times}\nerrors against reference, over all frames\n{errors}{reason}{}{}",
+            self.renderer_table(),
             self.scaling_table(&threads)
         );
         text
@@ -118,6 +119,64 @@ impl Report {
             ]);
         }
         cells
+    }
+
+    /// The other renderers, as a table that follows those of the kernels; nothing without any.
+    fn renderer_table(&self) -> String {
+        if self.renderers.is_empty() {
+            return String::new();
+        }
+        let names = ["scene", "stage", "renderer"];
+        let wrong = [
+            "solid", "face", "shadow", "mirror", "several", "other", "NaN",
+        ];
+        let mut table = Table::new(vec![
+            Columns::new("", &names),
+            Columns::new("time a frame", &["ms", "min … max", "× fill"]),
+            Columns::new("wrong pixels", &wrong),
+            Columns::new("other pixels", &["rounded", "right"]),
+            Columns::new("samples", &["8-bit", "largest error"]),
+        ]);
+        let mut failures = String::new();
+        for row in &self.renderers {
+            let mut cells = vec![
+                row.scene.clone(),
+                row.stage.number().to_string(),
+                row.renderer.clone(),
+            ];
+            match &row.measured {
+                Ok(measured) => {
+                    let (summary, difference) = (&measured.summary, &measured.difference);
+                    let decisions = summary.wrong_decisions;
+                    cells.extend(time(measured.ms));
+                    cells.push(digits(measured.fill_ratio.median));
+                    let counts = [
+                        decisions.solid,
+                        decisions.face,
+                        decisions.shadow,
+                        decisions.mirror,
+                        summary.several,
+                        summary.another_color,
+                        summary.not_a_number,
+                        summary.rounding,
+                        summary.right,
+                        difference.eight_bit,
+                    ];
+                    cells.extend(counts.map(|count| count.to_string()));
+                    cells.push(digits(difference.max_abs));
+                }
+                Err(reason) => {
+                    cells.push("failed".to_owned());
+                    cells.extend(vec!["–".to_owned(); 13]);
+                    let _ = writeln!(failures, "failed: {reason}");
+                }
+            }
+            table.rows.push(cells);
+        }
+        format!(
+            "\nother renderers, over all frames; a pixel is wrong where it shows another decision than the true one, or is more than {} off\n{table}{failures}",
+            digits(self.tolerance.into())
+        )
     }
 
     /// What spheres cost, as a table that follows the others; nothing without crowds.
