@@ -7,6 +7,8 @@ mod program;
 
 #[path = "../src/random.rs"]
 mod random;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod samples;
 
 use std::fs;
 use std::path::Path;
@@ -28,6 +30,8 @@ pub(crate) use program::{
     PROGRAM, failed, names, open, printed, program, skipped, succeeded, text, words,
 };
 pub(crate) use random::Random;
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use samples::{compiled, interpreted};
 
 /// A frame as a new tracer with one thread makes it.
 pub(crate) fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Image {

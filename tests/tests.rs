@@ -36,6 +36,8 @@ mod listing;
 mod offscreen;
 mod oracle;
 mod pictures;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod program;
 mod properties;
 #[cfg(feature = "program")]
 mod readme;

@@ -150,7 +150,7 @@ fn has_nameless_files() -> bool {
 
 /// The signals that end the program as long as nobody wants them to be ignored: in the background
 /// of a shell that is so of the first.
-fn caught() -> Vec<Signal> {
+pub(crate) fn caught() -> Vec<Signal> {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = u64::from_str_radix(mask.unwrap().trim(), 16).unwrap();
@@ -183,7 +183,7 @@ fn killed_fifty_times_it_leaves_no_file() {
 }
 
 /// The memory in use by a process, in KiB.
-fn memory(child: &Child) -> Option<u64> {
+pub(crate) fn memory(child: &Child) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
     let line = status
         .lines()
