@@ -153,7 +153,9 @@ impl<'f, P: Lines> RowTracer<'f, P> {
 
     /// Prepares `scratch` for rows of this frame.
     pub(super) fn begin(&self, scratch: &mut Scratch) {
-        scratch.active.begin(&self.frame.edges, self.frame.grid);
+        scratch
+            .active
+            .begin(&self.frame.edge_table, self.frame.grid);
         scratch.depth_tests.clear();
         scratch.shade.cache.begin(self.frame.shaded_spheres);
     }
@@ -227,7 +229,7 @@ impl<'f, P: Lines> RowTracer<'f, P> {
             active.forget();
         }
         let look = |column: &Coverage| visible(frame, column, depth_tests);
-        active.enter(row.number, &frame.edges, self.level, frame.grid, look);
+        active.enter(row.number, &frame.edge_table, self.level, frame.grid, look);
         let mut from = 0;
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);

@@ -1,7 +1,7 @@
-//! The active edges: the crossings of a row from the left to the right, and what is visible between
-//! them.
+//! The active edges: the edges of regions that cross a row, from the left to the right, and what is
+//! visible between them.
 //!
-//! The edges that reach a band of [`ROWS`] rows are crossed with all of its rows at once. Crossings
+//! The regions that reach a band of [`ROWS`] rows are crossed with all of its rows at once. Edges
 //! move little from one row to the next, so their order is repaired instead of made anew.
 
 use fearless_simd::prelude::*;
@@ -12,43 +12,41 @@ use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::visibility::coverage::{Cover, Coverage};
 use crate::tracer::scanline::visibility::visible::{Packed, Visible};
 
-/// After so many exchanges in one row the next rows are sorted without asking whether they must be.
+/// After so many exchanges in one row, the remaining rows of the band are sorted without a test.
 const MANY: usize = 8;
 
-/// How often an edge crosses a band of rows.
+/// The edges of a region in a band of rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Crosses {
-    No,
-    /// Twice a row: its region's possible columns are certain in the whole band.
-    Certainly,
-    /// Four times a row: the region begins possibly, then certainly; it ends certainly, then
-    /// possibly.
-    Possibly,
+enum BandEdges {
+    /// The region has no pixels in the band.
+    None,
+    /// Two edges a row: all possible columns of the region are certain.
+    Certain,
+    /// Four edges a row: some columns of the region are only possible.
+    Uncertain,
 }
 
-/// One of the four crossings of an edge with a row, 4 · edge + kind: its region begins possibly (0),
-/// begins certainly (1), ends certainly (2), ends possibly (3).
+/// An edge of a region, 4 · region + kind: the region begins possibly (0), begins certainly (1),
+/// ends certainly (2), ends possibly (3).
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Crossing(u32);
+struct Edge(u32);
 
-impl Crossing {
-    /// Those of an edge, from the left.
-    fn of(edge: usize, crosses: Crosses) -> impl Iterator<Item = Crossing> {
-        let kinds: &[u32] = match crosses {
-            Crosses::No => &[],
-            Crosses::Certainly => &[1, 3],
-            Crosses::Possibly => &[0, 1, 2, 3],
+impl Edge {
+    /// The edges of a region, from the left.
+    fn of(region: usize, band: BandEdges) -> impl Iterator<Item = Edge> {
+        let kinds: &[u32] = match band {
+            BandEdges::None => &[],
+            BandEdges::Certain => &[1, 3],
+            BandEdges::Uncertain => &[0, 1, 2, 3],
         };
-        kinds
-            .iter()
-            .map(move |kind| Crossing(4 * edge as u32 + kind))
+        kinds.iter().map(move |kind| Edge(4 * region as u32 + kind))
     }
 
-    fn edge(self) -> usize {
+    fn region(self) -> usize {
         self.0 as usize / 4
     }
 
-    /// How the region covers the columns after it.
+    /// How the region covers the columns to the right of the edge.
     fn cover(self) -> Cover {
         match self.0 % 4 {
             0 | 2 => Cover::Unknown,
@@ -63,349 +61,347 @@ impl Crossing {
     }
 }
 
-/// A part of a row: before which of its crossings it ends, and what is visible there.
+/// Neighbouring gaps that show the same.
 #[derive(Clone, Copy)]
 struct Span {
+    /// The index of the edge at which the last gap ends.
     to: u32,
     visible: Packed,
 }
 
-/// The crossings of a row from the left to the right, and what is visible between them.
+/// The edges that cross a row from the left to the right, and what is visible in the gaps between
+/// them.
 ///
-/// Visibility between two crossings depends on which edges were crossed before, and not on where.
-/// So it is cached from row to row; where two crossings exchange places, only what lies between
-/// these two is found out again.
+/// What a gap shows depends on the edges to its left, and not on their columns. So it is kept from
+/// row to row; where two edges exchange places, only the gaps between them are resolved again.
 #[derive(Default)]
 pub(crate) struct ActiveEdges {
     coverage: Coverage,
-    /// The first of the rows that are crossed.
+    /// The first row of the band.
     first: Option<u32>,
-    /// The first column after a row.
+    /// N, the column at which every row ends.
     size: u32,
-    /// How each edge crosses them.
-    crosses: Vec<Crosses>,
-    /// Bit by bit, 64 in a word, those that do.
-    crossing: Vec<u64>,
-    /// Where, row by row, for each of its four crossings.
-    places: Vec<[u32; ROWS]>,
-    /// In the order of the row that was entered last.
-    crossings: Vec<Crossing>,
-    /// The places of these, and the row's end: side by side, for those who go through all.
-    at: Vec<[u32; ROWS]>,
-    /// What is visible before each of them, and after the last.
-    visible: Vec<Packed>,
-    /// The columns of these in that row.
-    here: Vec<u32>,
-    /// Bit by bit, the rows in which they come in another order, and those that have columns of
-    /// which it is not known what is visible.
-    disordered: u64,
-    wanting: u64,
-    /// What the row that was entered last shows, if `has_spans`; neighbours that show the same
-    /// are one. The first is none.
+    /// By the number of the region.
+    band_edges: Vec<BandEdges>,
+    /// A bit for each region, 64 in a word: whether it has edges in the band.
+    is_active: Vec<u64>,
+    /// For each of the four edges of each region, its column in each row of the band.
+    columns: Vec<[u32; ROWS]>,
+    /// The edges in the order of the row that was entered last.
+    edges: Vec<Edge>,
+    /// The columns of `edges`, and N at the end: side by side, for loops over all of them.
+    sorted_columns: Vec<[u32; ROWS]>,
+    /// What the gap before each of `edges` shows, and the gap after the last.
+    gaps: Vec<Packed>,
+    /// The columns of `edges` in the row that is being sorted.
+    row_columns: Vec<u32>,
+    /// A bit for each row of the band: whether `edges` are out of order there.
+    unsorted: u64,
+    /// A bit for each row of the band: whether an unresolved gap has columns there.
+    unresolved: u64,
+    /// The spans of the row that was entered last, if `has_spans`. The first is a placeholder.
     spans: Vec<Span>,
     has_spans: bool,
-    /// The places in `visible` where nobody has looked.
-    open: Vec<usize>,
-    /// Edges whose crossings are not, or no longer, those in `crossings`.
+    /// The indices of the unresolved `gaps`.
+    unresolved_gaps: Vec<usize>,
+    /// The regions of which other edges than before cross the band.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
-    /// Their new crossings, by their places in the first of the rows.
-    arrivals: Vec<(u32, Crossing)>,
-    /// Where `crossings` and `visible` are made anew.
-    spare: Changed,
+    /// The new edges of changed regions, by their columns in the first row of the band.
+    arrivals: Vec<(u32, Edge)>,
+    /// The memory in which `edges` and `gaps` are made anew.
+    spare: Spare,
 }
 
 #[derive(Default)]
-struct Changed {
-    crossings: Vec<Crossing>,
-    visible: Vec<Packed>,
+struct Spare {
+    edges: Vec<Edge>,
+    gaps: Vec<Packed>,
 }
 
 impl ActiveEdges {
     /// Prepares for rows of a frame.
-    pub(crate) fn begin(&mut self, edges: &EdgeTable<'_>, grid: Grid) {
-        let count = edges.of.len();
+    pub(crate) fn begin(&mut self, table: &EdgeTable<'_>, grid: Grid) {
+        let count = table.kinds.len();
         self.first = None;
-        self.crosses.clear();
-        self.crosses.resize(count, Crosses::No);
-        self.crossing.clear();
-        self.crossing.resize(edges.words(), 0);
-        self.places.resize(4 * count, [0; ROWS]);
+        self.band_edges.clear();
+        self.band_edges.resize(count, BandEdges::None);
+        self.is_active.clear();
+        self.is_active.resize(table.words(), 0);
+        self.columns.resize(4 * count, [0; ROWS]);
         self.size = grid.size;
         self.is_changed.clear();
         self.is_changed.resize(count, false);
-        self.coverage.clear(edges);
-        self.crossings.clear();
+        self.coverage.clear(table);
+        self.edges.clear();
         self.forget();
     }
 
-    /// Forgets what is visible.
+    /// Forgets what all gaps show.
     pub(crate) fn forget(&mut self) {
-        self.visible.clear();
-        self.visible.resize(self.crossings.len() + 1, Packed::OPEN);
+        self.gaps.clear();
+        self.gaps.resize(self.edges.len() + 1, Packed::UNRESOLVED);
         self.has_spans = false;
     }
 
-    /// Goes to a row. `look` is asked what is visible in a column where that is not known.
+    /// Goes to a row. `resolve` finds what is visible where these regions cover a column.
     pub(crate) fn enter(
         &mut self,
         row: u32,
-        edges: &EdgeTable<'_>,
+        table: &EdgeTable<'_>,
         level: Level,
         grid: Grid,
-        look: impl FnMut(&Coverage) -> Visible,
+        resolve: impl FnMut(&Coverage) -> Visible,
     ) {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
             self.first = Some(first);
             dispatch!(level, simd => {
-                self.cross(simd, edges, first, grid);
-                self.find_disorder(simd);
+                self.cross_band(simd, table, first, grid);
+                self.find_unsorted_rows(simd);
             });
         }
         let row = (row - first) as usize;
-        if self.disordered >> row & 1 == 1 {
-            let changes = self.order(row);
-            if changes > MANY {
-                // So it will be in the next rows.
-                self.disordered = u64::MAX;
+        if self.unsorted >> row & 1 == 1 {
+            let exchanges = self.sort(row);
+            if exchanges > MANY {
+                // The next rows will need as many.
+                self.unsorted = u64::MAX;
             } else {
-                dispatch!(level, simd => self.find_disorder(simd));
+                dispatch!(level, simd => self.find_unsorted_rows(simd));
             }
         }
-        if !self.has_spans || self.wanting >> row & 1 == 1 {
-            self.look(row, edges, look);
+        if !self.has_spans || self.unresolved >> row & 1 == 1 {
+            self.resolve_gaps(row, table, resolve);
             dispatch!(level, simd => self.merge_spans(simd));
         }
     }
 
-    /// How many parts the row has.
+    /// The number of spans of the row.
     pub(crate) fn len(&self) -> usize {
         self.spans.len() - 1
     }
 
-    /// Where a part of a row ends, and what is visible there.
+    /// The column at which a span of the row ends, and what the span shows.
     pub(crate) fn span(&self, number: usize, row: u32) -> (u32, Visible) {
         let Span { to, visible } = self.spans[number + 1];
-        let to = self.at[to as usize][row as usize % ROWS];
+        let to = self.sorted_columns[to as usize][row as usize % ROWS];
         (to, visible.visible())
     }
 
-    /// Sees to it that the crossings come in the order of a row. Returns how often two have changed
-    /// places.
-    fn order(&mut self, row: usize) -> usize {
-        let places = &self.at[..self.crossings.len()];
-        self.here.clear();
-        self.here.extend(places.iter().map(|places| places[row]));
-        let mut changes = 0;
-        for i in 1..self.here.len() {
-            let place = self.here[i];
-            if self.here[i - 1] <= place {
+    /// Sorts the edges by their columns in a row. Returns how often two were exchanged.
+    fn sort(&mut self, row: usize) -> usize {
+        let columns = &self.sorted_columns[..self.edges.len()];
+        self.row_columns.clear();
+        self.row_columns
+            .extend(columns.iter().map(|columns| columns[row]));
+        let mut exchanges = 0;
+        for i in 1..self.row_columns.len() {
+            let column = self.row_columns[i];
+            if self.row_columns[i - 1] <= column {
                 continue;
             }
-            let (crossing, at) = (self.crossings[i], self.at[i]);
+            let (edge, columns) = (self.edges[i], self.sorted_columns[i]);
             let mut to = i;
-            while to > 0 && self.here[to - 1] > place {
-                self.here[to] = self.here[to - 1];
-                self.crossings[to] = self.crossings[to - 1];
-                self.at[to] = self.at[to - 1];
-                // Between the two, one was crossed before, and now the other.
-                self.visible[to] = Packed::OPEN;
+            while to > 0 && self.row_columns[to - 1] > column {
+                self.row_columns[to] = self.row_columns[to - 1];
+                self.edges[to] = self.edges[to - 1];
+                self.sorted_columns[to] = self.sorted_columns[to - 1];
+                // The gap between the two lay behind one of them, and now lies behind the other.
+                self.gaps[to] = Packed::UNRESOLVED;
                 to -= 1;
-                changes += 1;
+                exchanges += 1;
             }
-            self.here[to] = place;
-            self.crossings[to] = crossing;
-            self.at[to] = at;
+            self.row_columns[to] = column;
+            self.edges[to] = edge;
+            self.sorted_columns[to] = columns;
         }
-        self.has_spans &= changes == 0;
-        changes
+        self.has_spans &= exchanges == 0;
+        exchanges
     }
 
-    /// What rows show where the crossings are in this order, as far as it is known.
+    /// Merges neighbouring gaps that show the same into spans, and collects unresolved gaps.
     #[inline(always)]
     fn merge_spans<S: Simd>(&mut self, simd: S) {
-        // What comes next is not to be foreseen: every step does the same, and counts or does not
-        // count.
+        // No processor predicts the order of what gaps show: so the loop has no branches, and each
+        // turn writes to both lists, whose lengths tell whether the entry counts.
         let nothing = Span {
-            to: self.crossings.len() as u32,
-            visible: Packed::OPEN,
+            to: self.edges.len() as u32,
+            visible: Packed::UNRESOLVED,
         };
         self.spans.clear();
-        self.spans.resize(self.visible.len() + 1, nothing);
-        self.open.clear();
-        self.open.resize(self.visible.len() + 1, 0);
-        let (mut spans, mut open) = (0, 0);
+        self.spans.resize(self.gaps.len() + 1, nothing);
+        self.unresolved_gaps.clear();
+        self.unresolved_gaps.resize(self.gaps.len() + 1, 0);
+        let (mut spans, mut unresolved) = (0, 0);
         let mut last = nothing;
-        for (gap, &visible) in self.visible.iter().enumerate() {
-            let is_open = visible == Packed::OPEN;
-            self.open[open] = gap;
-            open += usize::from(is_open);
-            let is_new = !is_open & (visible != last.visible);
+        for (gap, &visible) in self.gaps.iter().enumerate() {
+            let is_unresolved = visible == Packed::UNRESOLVED;
+            self.unresolved_gaps[unresolved] = gap;
+            unresolved += usize::from(is_unresolved);
+            let is_new = !is_unresolved & (visible != last.visible);
             spans += usize::from(is_new);
             last = Span {
-                to: if is_open { last.to } else { gap as u32 },
-                visible: if is_open { last.visible } else { visible },
+                to: if is_unresolved { last.to } else { gap as u32 },
+                visible: if is_unresolved { last.visible } else { visible },
             };
             self.spans[spans] = last;
         }
         self.spans.truncate(spans + 1);
-        self.open.truncate(open);
+        self.unresolved_gaps.truncate(unresolved);
         self.has_spans = true;
-        let mut wanting = mask32x8::splat(simd, false);
-        for &gap in &self.open {
+        let mut unresolved = mask32x8::splat(simd, false);
+        for &gap in &self.unresolved_gaps {
             let from = match gap.checked_sub(1) {
-                Some(before) => &self.at[before],
+                Some(before) => &self.sorted_columns[before],
                 None => &[0; ROWS],
             };
-            let to = &self.at[gap];
+            let to = &self.sorted_columns[gap];
             let (from, to) = (u32x8::from_slice(simd, from), u32x8::from_slice(simd, to));
-            wanting |= from.simd_lt(to);
+            unresolved |= from.simd_lt(to);
         }
-        self.wanting = wanting.to_bitmask();
+        self.unresolved = unresolved.to_bitmask();
     }
 
-    /// Finds out what is visible in the gaps that have columns in this row, where it is not known.
-    /// All regions end with the row: then the coverage is empty again.
-    fn look(
+    /// Resolves the gaps that have columns in this row. Every region ends with its row, so the
+    /// coverage is empty again afterwards.
+    fn resolve_gaps(
         &mut self,
         row: usize,
-        edges: &EdgeTable<'_>,
-        mut look: impl FnMut(&Coverage) -> Visible,
+        table: &EdgeTable<'_>,
+        mut resolve: impl FnMut(&Coverage) -> Visible,
     ) {
         let mut from = 0;
-        for gap in 0..self.visible.len() {
-            let to = self.at[gap][row];
-            if self.visible[gap] == Packed::OPEN && from < to {
-                self.visible[gap] = Packed::new(look(&self.coverage));
+        for gap in 0..self.gaps.len() {
+            let to = self.sorted_columns[gap][row];
+            if self.gaps[gap] == Packed::UNRESOLVED && from < to {
+                self.gaps[gap] = Packed::new(resolve(&self.coverage));
             }
             from = to;
-            if let Some(crossing) = self.crossings.get(gap) {
-                self.coverage
-                    .cross(edges, crossing.edge(), crossing.cover());
+            if let Some(edge) = self.edges.get(gap) {
+                self.coverage.cross(table, edge.region(), edge.cover());
             }
         }
     }
 
-    /// How the edges cross the rows from `first` on.
+    /// Crosses all regions with the band of rows from `first` on.
     #[inline(always)]
-    fn cross<S: Simd>(&mut self, simd: S, edges: &EdgeTable<'_>, first: u32, grid: Grid) {
+    fn cross_band<S: Simd>(&mut self, simd: S, table: &EdgeTable<'_>, first: u32, grid: Grid) {
         self.changed.clear();
-        for word in 0..self.crossing.len() {
-            let reaching = edges.reaching(simd, word, first);
-            let mut asked = reaching | self.crossing[word];
-            while asked != 0 {
-                let bit = asked.trailing_zeros() as usize;
-                asked &= asked - 1;
-                let edge = 64 * word + bit;
-                let crosses = match reaching >> bit & 1 {
-                    1 => self.cross_by(simd, edge, edges, first, grid),
-                    _ => Crosses::No,
+        for word in 0..self.is_active.len() {
+            let reaching = table.reaching(simd, word, first);
+            let mut candidates = reaching | self.is_active[word];
+            while candidates != 0 {
+                let bit = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let region = 64 * word + bit;
+                let band_edges = match reaching >> bit & 1 {
+                    1 => self.cross_region(simd, region, table, first, grid),
+                    _ => BandEdges::None,
                 };
-                if self.crosses[edge] != crosses {
-                    self.crosses[edge] = crosses;
-                    self.changed.push(edge);
-                    let is_crossing = u64::from(crosses != Crosses::No);
-                    self.crossing[word] = self.crossing[word] & !(1 << bit) | is_crossing << bit;
+                if self.band_edges[region] != band_edges {
+                    self.band_edges[region] = band_edges;
+                    self.changed.push(region);
+                    let is_active = u64::from(band_edges != BandEdges::None);
+                    self.is_active[word] = self.is_active[word] & !(1 << bit) | is_active << bit;
                 }
             }
         }
         if !self.changed.is_empty() {
-            self.change();
+            self.replace_changed();
         }
-        let places = self.crossings.iter();
-        let places = places.map(|crossing| self.places[crossing.0 as usize]);
-        self.at.clear();
-        self.at.extend(places);
-        self.at.push([self.size; ROWS]);
-        // A gap that nobody has looked into, empty so far, may have columns now.
-        self.has_spans &= self.open.is_empty();
+        let columns = self.edges.iter();
+        let columns = columns.map(|edge| self.columns[edge.0 as usize]);
+        self.sorted_columns.clear();
+        self.sorted_columns.extend(columns);
+        self.sorted_columns.push([self.size; ROWS]);
+        // An unresolved gap that had no columns in the band before may have columns in this one.
+        self.has_spans &= self.unresolved_gaps.is_empty();
     }
 
-    /// How an edge crosses them.
+    /// Crosses one region with the band.
     #[inline(always)]
-    fn cross_by<S: Simd>(
+    fn cross_region<S: Simd>(
         &mut self,
         simd: S,
-        edge: usize,
-        edges: &EdgeTable<'_>,
+        region: usize,
+        table: &EdgeTable<'_>,
         first: u32,
         grid: Grid,
-    ) -> Crosses {
-        let shape = &edges.shapes[edge];
+    ) -> BandEdges {
+        let shape = &table.regions[region];
         let mut spans = shape.cross(simd, first, grid);
         if !spans.is_certain {
             shape.narrow(&mut spans, first, grid);
         }
         if spans.filled == 0 {
-            return Crosses::No;
+            return BandEdges::None;
         }
         spans.put_empty_beside();
         let ([a, d], [b, c]) = (spans.possible, spans.certain);
-        self.places[4 * edge..4 * edge + 4].copy_from_slice(&[a, b, c, d]);
+        self.columns[4 * region..4 * region + 4].copy_from_slice(&[a, b, c, d]);
         if spans.is_certain {
-            Crosses::Certainly
+            BandEdges::Certain
         } else {
-            Crosses::Possibly
+            BandEdges::Uncertain
         }
     }
 
-    /// Takes out the crossings of edges that have changed, and brings in their new ones.
-    fn change(&mut self) {
+    /// Removes the old edges of changed regions, and inserts the new ones.
+    fn replace_changed(&mut self) {
         self.has_spans = false;
         self.arrivals.clear();
-        for edge in self.changed.drain(..) {
-            self.is_changed[edge] = true;
-            for crossing in Crossing::of(edge, self.crosses[edge]) {
-                let place = self.places[crossing.0 as usize][0];
-                self.arrivals.push((place, crossing));
+        for region in self.changed.drain(..) {
+            self.is_changed[region] = true;
+            for edge in Edge::of(region, self.band_edges[region]) {
+                self.arrivals.push((self.columns[edge.0 as usize][0], edge));
             }
         }
         self.arrivals.sort_unstable();
-        let Changed { crossings, visible } = &mut self.spare;
-        crossings.clear();
-        visible.clear();
+        let Spare { edges, gaps } = &mut self.spare;
+        edges.clear();
+        gaps.clear();
         let mut arrivals = self.arrivals.iter().peekable();
-        // `gone` counts the removed edges that hold the present place, `come` the added ones. Where
-        // both are 0, no edge was added or removed, and the cached visibility holds.
-        let (mut gone, mut come) = (0, 0);
-        let mut before = self.visible[0];
-        for i in 0..self.visible.len() {
-            let crossing = self.crossings.get(i);
-            if let Some(crossing) = crossing.filter(|crossing| self.is_changed[crossing.edge()]) {
-                gone += crossing.step();
-                if before == Packed::OPEN && gone == 0 {
-                    before = self.visible[i + 1];
+        // `removed` and `added` count the removed and the added regions that cover the present gap.
+        // Where both are 0, the same regions cover the gap as before, and what it shows holds.
+        let (mut removed, mut added) = (0, 0);
+        let mut before = self.gaps[0];
+        for i in 0..self.gaps.len() {
+            let edge = self.edges.get(i);
+            if let Some(edge) = edge.filter(|edge| self.is_changed[edge.region()]) {
+                removed += edge.step();
+                if before == Packed::UNRESOLVED && removed == 0 {
+                    before = self.gaps[i + 1];
                 }
                 continue;
             }
-            let place = crossing.map_or(u32::MAX, |crossing| self.places[crossing.0 as usize][0]);
-            while let Some((_, arrival)) = arrivals.next_if(|(arrives, _)| *arrives < place) {
-                visible.push(before.if_closed(come));
-                crossings.push(*arrival);
-                come += arrival.step();
+            let column = edge.map_or(u32::MAX, |edge| self.columns[edge.0 as usize][0]);
+            while let Some((_, arrival)) = arrivals.next_if(|(arrives, _)| *arrives < column) {
+                gaps.push(before.unless_changed(added));
+                edges.push(*arrival);
+                added += arrival.step();
             }
-            visible.push(before.if_closed(come));
-            if let Some(&crossing) = crossing {
-                crossings.push(crossing);
-                before = self.visible[i + 1].if_closed(gone);
+            gaps.push(before.unless_changed(added));
+            if let Some(&edge) = edge {
+                edges.push(edge);
+                before = self.gaps[i + 1].unless_changed(removed);
             }
         }
-        std::mem::swap(&mut self.crossings, crossings);
-        std::mem::swap(&mut self.visible, visible);
+        std::mem::swap(&mut self.edges, edges);
+        std::mem::swap(&mut self.gaps, gaps);
         self.is_changed.fill(false);
     }
 
-    /// Finds the rows in which the crossings are not in order.
+    /// Finds the rows in which the edges are out of order.
     #[inline(always)]
-    fn find_disorder<S: Simd>(&mut self, simd: S) {
-        let mut disordered = mask32x8::splat(simd, false);
+    fn find_unsorted_rows<S: Simd>(&mut self, simd: S) {
+        let mut unsorted = mask32x8::splat(simd, false);
         let mut before = u32x8::splat(simd, 0);
-        for place in &self.at {
-            let place = u32x8::from_slice(simd, place);
-            disordered |= before.simd_gt(place);
-            before = place;
+        for columns in &self.sorted_columns {
+            let columns = u32x8::from_slice(simd, columns);
+            unsorted |= before.simd_gt(columns);
+            before = columns;
         }
-        self.disordered = disordered.to_bitmask();
+        self.unsorted = unsorted.to_bitmask();
     }
 }

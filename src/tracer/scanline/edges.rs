@@ -1,8 +1,4 @@
-//! The edges of a frame: the lines on the screen at which a row may change what it shows.
-//!
-//! A silhouette, an edge between two faces, the outline of a shadow or of a mirror image is a
-//! straight line or an ellipse on the screen, because eye rays are parallel, and so are those to
-//! the light.
+//! Regions of the screen, and the edges at which a row enters and leaves them.
 
 #[cfg(test)]
 mod bounds;

@@ -91,9 +91,13 @@ fn spans<P: Lines>(
         ..
     } = scratch;
     let frame = &tracer.frame;
-    active.enter(row, &frame.edges, tracer.level, frame.grid, |coverage| {
-        visible(frame, coverage, depth_tests)
-    });
+    active.enter(
+        row,
+        &frame.edge_table,
+        tracer.level,
+        frame.grid,
+        |coverage| visible(frame, coverage, depth_tests),
+    );
     let mut spans: Vec<(u32, Visible)> = Vec::new();
     let mut from = 0;
     for number in 0..active.len() {

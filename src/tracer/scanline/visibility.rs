@@ -1,5 +1,5 @@
-//! What is visible in a span: from the edges that hold it to one paint, one sphere, or a pixel to
-//! be asked by itself.
+//! What is visible in a gap: from the regions that cover its columns to one paint or one sphere, or
+//! to pixels that are decided one by one.
 
 pub(super) mod coverage;
 pub(super) mod depth;

@@ -1,33 +1,32 @@
-//! Where edges cross a row.
+//! Regions: convex parts of the screen, and the columns that they have in a row.
 //!
 //! # Why rows
 //!
-//! Eye rays are parallel, and so are those to the light. So every edge in the picture that does
-//! not lie on a sphere is a straight line or an ellipse on the screen: a silhouette, an edge
-//! between faces, the surface's sides, the outline of a mirror image, a shadow on the surface or on
-//! a face. Each is known as a polynomial in X and Y, the place on the screen in thirds of
-//! a pixel from its centre, and a row of pixels, on which Y is fixed, crosses it at a root.
+//! Eye rays are parallel, and so are rays to the light. So the border of every region is made of
+//! straight lines and of at most one ellipse: silhouettes, edges between faces, the surface's
+//! sides, outlines of mirror images, shadows on the surface or on a face. Each line and each
+//! ellipse is a polynomial in X and Y, the position on the screen in thirds of a pixel from its
+//! centre. In a row of pixels Y is fixed, and the row's edges are roots of these polynomials.
 //!
-//! A root is computed in f64 with a bound on its error, derived where it is used. The columns
-//! beyond the bound are decided; those within it, rarely one, are asked one by one.
+//! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
+//! the bound are decided; the columns within it, rarely one, are decided one by one.
 
 use bumpalo::Bump;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::arena::collect;
-
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::RunEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::{Grid, ROWS, places};
 use crate::tracer::scanline::span::Spans;
 
-/// A convex part of the picture: what half-planes and an ellipse have in common.
+/// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
     half_planes: &'f [HalfPlane],
     ellipse: Option<Ellipse>,
-    /// The rows that it can cross.
+    /// The half-open range of rows outside of which the region has no pixels that matter.
     rows: (u32, u32),
 }
 
@@ -50,18 +49,18 @@ impl<'f> Region<'f> {
         self
     }
 
-    /// The same where it is known to cross no other than these rows, or none matters.
+    /// The same region, of which only these rows matter.
     pub(crate) fn within(mut self, rows: (u32, u32)) -> Self {
         self.restrict(rows);
         self
     }
 
-    /// Leaves out all other rows.
+    /// Leaves out all rows but these.
     pub(crate) fn restrict(&mut self, rows: (u32, u32)) {
         self.rows = (self.rows.0.max(rows.0), self.rows.1.min(rows.1));
     }
 
-    /// The rows that it can cross.
+    /// The rows in which the region may have pixels.
     pub(crate) fn rows(&self) -> (u32, u32) {
         self.rows
     }
@@ -75,7 +74,7 @@ impl<'f> Region<'f> {
         self.ellipse.as_ref()
     }
 
-    /// Its columns of the rows from `row` on.
+    /// The region's columns in the band of rows from `row` on.
     #[inline(always)]
     pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> Spans {
         let mut spans = Spans::NONE;
@@ -111,7 +110,7 @@ impl<'f> Region<'f> {
         spans
     }
 
-    /// Asks the columns in doubt, from the outside in.
+    /// Decides the columns in doubt one by one, from the outside in.
     pub(crate) fn narrow(&self, spans: &mut Spans, row: u32, grid: Grid) {
         spans.is_certain = true;
         for i in 0..ROWS {

@@ -1,4 +1,4 @@
-//! The edges of a frame: what changes where a row crosses them.
+//! The edge table: all regions of a frame, and the rows that their edges can cross.
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
@@ -9,49 +9,52 @@ use crate::tracer::arena::collect;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::ROWS;
 
-/// What an edge is of.
+/// What the pixels of a region have in common.
 #[derive(Clone, Copy)]
-pub(crate) enum Edge {
+pub(crate) enum RegionKind {
+    /// Their eye rays meet the surface.
     Surface,
-    /// A shadow on the surface or on a facet.
+    /// Their points on a receiver are in one shadow.
     Shadow(Receiver),
-    /// Between two facets of a tetrahedron.
+    /// Their eye rays enter the first of two facets last: the region ends at the edge of both.
     Crease,
-    /// A solid, by its place among those seen directly, or in the mirror.
+    /// Their eye rays meet a solid, by its index among those seen directly.
     Direct(usize),
+    /// Their mirrored rays meet a solid, by its index among those seen in the mirror.
     Mirrored(usize),
 }
 
-/// What shadows fall on, by its number: the surface, or a facet.
+/// The number of what shadows fall on: the surface or a facet.
 #[derive(Clone, Copy)]
 pub(crate) struct Receiver(pub(crate) u32);
 
-/// All edges of a frame, as they are found. Each is known by its number.
-pub(crate) struct Edges<'f> {
+/// An edge table to which regions are added. A region is known by its number.
+pub(crate) struct EdgeTableBuilder<'f> {
     arena: &'f Bump,
-    shapes: Growing<'f, Region<'f>>,
-    of: Growing<'f, Edge>,
+    regions: Growing<'f, Region<'f>>,
+    kinds: Growing<'f, RegionKind>,
     receivers: u32,
 }
 
-/// The edges of a frame.
+/// The regions of a frame.
 pub(crate) struct EdgeTable<'f> {
-    pub(crate) shapes: &'f [Region<'f>],
-    pub(crate) of: &'f [Edge],
+    pub(crate) regions: &'f [Region<'f>],
+    /// By the number of the region.
+    pub(crate) kinds: &'f [RegionKind],
     /// How many receivers of shadows there are.
     pub(crate) receivers: usize,
-    /// Of 64 at a time the first of the rows that each can cross, and the first after these. Where
-    /// the last are fewer, the others cross none.
+    /// For 64 regions at a time, the half-open range of the rows of each: where it begins, and
+    /// where it ends. Missing regions have no rows.
     rows: &'f [[[u32; 64]; 2]],
 }
 
 impl EdgeTable<'_> {
-    /// How many times 64 edges there are.
+    /// The number of words that hold a bit for every region.
     pub(crate) fn words(&self) -> usize {
         self.rows.len()
     }
 
-    /// Which of 64 edges can cross any of the rows from `first` on, bit by bit.
+    /// A bit for each of 64 regions: whether it may have pixels in the band of rows from `first` on.
     #[inline(always)]
     pub(crate) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
         let [from, to] = &self.rows[word];
@@ -66,24 +69,24 @@ impl EdgeTable<'_> {
     }
 }
 
-impl<'f> Edges<'f> {
+impl<'f> EdgeTableBuilder<'f> {
     pub(crate) fn new(arena: &'f Bump) -> Self {
-        Edges {
+        EdgeTableBuilder {
             arena,
-            shapes: Growing::new_in(arena),
-            of: Growing::new_in(arena),
+            regions: Growing::new_in(arena),
+            kinds: Growing::new_in(arena),
             receivers: 0,
         }
     }
 
-    /// Adds one, and returns its number. Those of one kind come in the order of their solids.
-    pub(crate) fn add(&mut self, shape: Region<'f>, of: Edge) -> usize {
-        self.shapes.push(shape);
-        self.of.push(of);
-        self.of.len() - 1
+    /// Adds a region, and returns its number.
+    pub(crate) fn add(&mut self, region: Region<'f>, kind: RegionKind) -> usize {
+        self.regions.push(region);
+        self.kinds.push(kind);
+        self.kinds.len() - 1
     }
 
-    /// Something that is seen in these rows only, and the shadows on it.
+    /// Adds a receiver that is seen in these rows only, and the shadows on it.
     pub(crate) fn add_receiver(
         &mut self,
         shadows: impl IntoIterator<Item = Region<'f>>,
@@ -93,24 +96,24 @@ impl<'f> Edges<'f> {
         self.receivers += 1;
         let shadows = shadows.into_iter().map(|shadow| shadow.within(rows));
         for shadow in shadows.filter(|shadow| !shadow.is_nowhere()) {
-            self.add(shadow, Edge::Shadow(receiver));
+            self.add(shadow, RegionKind::Shadow(receiver));
         }
         receiver
     }
 
-    pub(crate) fn all(self) -> EdgeTable<'f> {
-        let rows = self.shapes.chunks(64).map(|shapes| {
+    pub(crate) fn build(self) -> EdgeTable<'f> {
+        let rows = self.regions.chunks(64).map(|regions| {
             let mut rows = [[0; 64]; 2];
-            for (bit, shape) in shapes.iter().enumerate() {
-                (rows[0][bit], rows[1][bit]) = shape.rows();
+            for (bit, region) in regions.iter().enumerate() {
+                (rows[0][bit], rows[1][bit]) = region.rows();
             }
             rows
         });
         EdgeTable {
             rows: collect(self.arena, rows),
             receivers: self.receivers as usize,
-            shapes: self.shapes.into_bump_slice(),
-            of: self.of.into_bump_slice(),
+            regions: self.regions.into_bump_slice(),
+            kinds: self.kinds.into_bump_slice(),
         }
     }
 }

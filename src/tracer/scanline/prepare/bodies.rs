@@ -13,7 +13,7 @@ use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::Edge;
+use crate::tracer::scanline::edges::table::RegionKind;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
@@ -41,11 +41,11 @@ pub(crate) fn with_bodies<'f>(
     for (place, solid) in outlines.all.into_iter().enumerate() {
         let body = bodies.of(&solid, parts);
         let edge = if mirrored {
-            Edge::Mirrored(place)
+            RegionKind::Mirrored(place)
         } else {
-            Edge::Direct(place)
+            RegionKind::Direct(place)
         };
-        parts.edges.add(solid.outline, edge);
+        parts.edge_table.add(solid.outline, edge);
         solids.push(Solid {
             side: solid.side,
             depth: solid.depth,
@@ -162,7 +162,7 @@ impl<'p, 's> Bodies<'p, 's> {
                 lit: paint(false),
                 in_shadow: paint(self.shadows),
                 turned_away,
-                shadows: parts.edges.add_receiver(shadows, rows),
+                shadows: parts.edge_table.add_receiver(shadows, rows),
             });
         }
         let place = |face: usize| solid.facets.iter().position(|(other, _)| *other == face);
@@ -173,7 +173,7 @@ impl<'p, 's> Bodies<'p, 's> {
             let crease = Region::new(crease, None, grid).within(rows);
             Some(Pair {
                 facets: (place(i)?, place(j)?),
-                first: parts.edges.add(crease, Edge::Crease),
+                first: parts.edge_table.add(crease, RegionKind::Crease),
             })
         });
         let pairs = collect(arena, pairs);

@@ -2,7 +2,7 @@
 
 use bumpalo::Bump;
 
-use crate::tracer::scanline::edges::table::Edges;
+use crate::tracer::scanline::edges::table::EdgeTableBuilder;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::write::paint::Paints;
 
@@ -10,7 +10,7 @@ use crate::tracer::scanline::write::paint::Paints;
 pub(crate) struct Builder<'f, 'c> {
     pub(crate) grid: Grid,
     pub(crate) arena: &'f Bump,
-    pub(crate) edges: Edges<'f>,
+    pub(crate) edge_table: EdgeTableBuilder<'f>,
     pub(crate) paints: Paints<'f, 'c>,
     pub(crate) shaded_spheres: usize,
 }

@@ -9,7 +9,7 @@ use crate::tracer::pixel::{self, Picture};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::{Edge, Receiver};
+use crate::tracer::scanline::edges::table::{Receiver, RegionKind};
 use crate::tracer::scanline::prepare::bodies::with_bodies;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
@@ -96,8 +96,8 @@ impl<'f> Floor<'f> {
                 mirrored.cull(&mut seen);
             }
         }
-        parts.edges.add(outline, Edge::Surface);
-        let shadows = parts.edges.add_receiver(shadows, rows);
+        parts.edge_table.add(outline, RegionKind::Surface);
+        let shadows = parts.edge_table.add_receiver(shadows, rows);
         Floor {
             mirrored: mirror
                 .zip(mirrored)

@@ -7,7 +7,7 @@ use crate::number::Bounded;
 use crate::stage::Stage;
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::table::{EdgeTable, Edges};
+use crate::tracer::scanline::edges::table::{EdgeTable, EdgeTableBuilder};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::bodies::with_bodies;
 use crate::tracer::scanline::prepare::builder::Builder;
@@ -20,7 +20,7 @@ use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 /// A frame, prepared for its rows.
 pub(crate) struct Prepared<'f> {
     pub(crate) grid: Grid,
-    pub(crate) edges: EdgeTable<'f>,
+    pub(crate) edge_table: EdgeTable<'f>,
     pub(crate) paints: AllPaints<'f>,
     pub(crate) background: PaintNumber,
     pub(crate) floor: Option<Floor<'f>>,
@@ -45,7 +45,7 @@ impl<'f> Prepared<'f> {
         let mut parts = Builder {
             grid,
             arena,
-            edges: Edges::new(arena),
+            edge_table: EdgeTableBuilder::new(arena),
             paints: Paints::new(color, arena),
             shaded_spheres: 0,
         };
@@ -64,7 +64,7 @@ impl<'f> Prepared<'f> {
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         Prepared {
             grid,
-            edges: parts.edges.all(),
+            edge_table: parts.edge_table.build(),
             paints: parts.paints.all(),
             background,
             floor,

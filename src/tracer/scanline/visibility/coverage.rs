@@ -1,9 +1,9 @@
 //! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! It follows the crossings of a row from the left to the right, so that its lists hold what covers
-//! one column, and nobody goes through all edges to find that.
+//! Coverage follows the edges of a row from the left to the right: each edge changes one entry, and
+//! nothing is computed anew for a column.
 
-use crate::tracer::scanline::edges::table::{Edge, EdgeTable, Receiver};
+use crate::tracer::scanline::edges::table::{EdgeTable, Receiver, RegionKind};
 
 /// How a region covers the present column.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -78,7 +78,7 @@ impl Met {
 /// The regions that cover the present column.
 #[derive(Default)]
 pub(crate) struct Coverage {
-    /// By the number of the edge.
+    /// By the number of the region.
     covers: Vec<Cover>,
     pub(crate) direct: Met,
     pub(crate) mirrored: Met,
@@ -88,26 +88,26 @@ pub(crate) struct Coverage {
 }
 
 impl Coverage {
-    /// Goes to where none of a frame's regions covers the column.
-    pub(crate) fn clear(&mut self, edges: &EdgeTable<'_>) {
+    /// Goes to the left of all regions of a frame.
+    pub(crate) fn clear(&mut self, table: &EdgeTable<'_>) {
         self.covers.clear();
-        self.covers.resize(edges.of.len(), Cover::Not);
+        self.covers.resize(table.kinds.len(), Cover::Not);
         self.direct.clear();
         self.mirrored.clear();
         self.surface = Tally::default();
         self.shadows.clear();
-        self.shadows.resize(edges.receivers, Tally::default());
+        self.shadows.resize(table.receivers, Tally::default());
     }
 
-    /// Goes across an edge: how its region covers the column then.
-    pub(crate) fn cross(&mut self, edges: &EdgeTable<'_>, edge: usize, to: Cover) {
-        let from = std::mem::replace(&mut self.covers[edge], to);
-        match edges.of[edge] {
-            Edge::Surface => self.surface.change(from, to),
-            Edge::Shadow(Receiver(number)) => self.shadows[number as usize].change(from, to),
-            Edge::Direct(solid) => self.direct.change(solid, from, to),
-            Edge::Mirrored(solid) => self.mirrored.change(solid, from, to),
-            Edge::Crease => {}
+    /// Goes across an edge of a region, to columns that the region covers as `to` tells.
+    pub(crate) fn cross(&mut self, table: &EdgeTable<'_>, region: usize, to: Cover) {
+        let from = std::mem::replace(&mut self.covers[region], to);
+        match table.kinds[region] {
+            RegionKind::Surface => self.surface.change(from, to),
+            RegionKind::Shadow(Receiver(number)) => self.shadows[number as usize].change(from, to),
+            RegionKind::Direct(solid) => self.direct.change(solid, from, to),
+            RegionKind::Mirrored(solid) => self.mirrored.change(solid, from, to),
+            RegionKind::Crease => {}
         }
     }
 
@@ -121,9 +121,9 @@ impl Coverage {
         self.shadows[number as usize].any()
     }
 
-    /// Whether an edge's region covers the column.
-    pub(crate) fn holds(&self, edge: usize) -> Option<bool> {
-        match self.covers[edge] {
+    /// Whether a region covers the column.
+    pub(crate) fn holds(&self, region: usize) -> Option<bool> {
+        match self.covers[region] {
             Cover::Not => Some(false),
             Cover::Certainly => Some(true),
             Cover::Unknown => None,

@@ -1,4 +1,4 @@
-//! Visibility: from the regions that cover a span to what it shows.
+//! Visibility: from the regions that cover a gap to what the gap shows.
 
 use crate::scene::Side;
 use crate::tracer::scanline::prepare::floor::Floor;
@@ -7,7 +7,7 @@ use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
 
-/// What is visible in a span with this coverage. What rows have to decide goes to `depth_tests`.
+/// What a gap with this coverage shows. What rows have to decide goes to `depth_tests`.
 pub(crate) fn visible(
     frame: &Prepared<'_>,
     coverage: &Coverage,

@@ -1,4 +1,4 @@
-//! What is visible between two crossings of a row: the answer of `resolve`, as it is cached.
+//! What gaps and spans show: the answer of `resolve`, as it is cached.
 
 use crate::tracer::scanline::write::paint::PaintNumber;
 
@@ -15,7 +15,7 @@ pub(crate) enum Shown {
     Unknown,
 }
 
-/// What is visible between two crossings.
+/// What a gap shows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Visible {
     /// The same in every row.
@@ -28,14 +28,12 @@ impl Visible {
     pub(crate) const UNKNOWN: Visible = Visible::Only(Shown::Unknown);
 }
 
-/// What is visible, or that this has not been found out, in a word: rows of these are compared
-/// without a branch.
+/// What a gap shows, or that the gap is unresolved, in one word: two are compared without a branch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packed(u64);
 
 impl Packed {
-    /// Not found out yet.
-    pub(crate) const OPEN: Packed = Packed(0);
+    pub(crate) const UNRESOLVED: Packed = Packed(0);
 
     pub(crate) fn new(visible: Visible) -> Packed {
         let (kind, number) = match visible {
@@ -47,9 +45,13 @@ impl Packed {
         Packed(kind << 32 | u64::from(number))
     }
 
-    /// The same where no columns are open, and otherwise nothing.
-    pub(crate) fn if_closed(self, columns: i32) -> Packed {
-        if columns == 0 { self } else { Packed::OPEN }
+    /// The same for a gap that no changed region covers; otherwise the gap is unresolved.
+    pub(crate) fn unless_changed(self, covering: i32) -> Packed {
+        if covering == 0 {
+            self
+        } else {
+            Packed::UNRESOLVED
+        }
     }
 
     pub(crate) fn visible(self) -> Visible {
