@@ -142,12 +142,12 @@ impl Extent {
         self.columns.contains(&column.into()) && self.rows.contains(&row.into())
     }
 
-    /// Its rows of a picture of `size` rows, from the first to before the last.
+    /// The half-open range of its rows in a picture of `size` rows.
     pub(super) fn rows(&self, size: u32) -> (u32, u32) {
         within(&self.rows, size)
     }
 
-    /// Its columns.
+    /// The half-open range of its columns.
     pub(super) fn columns(&self, size: u32) -> (u32, u32) {
         within(&self.columns, size)
     }

@@ -32,7 +32,7 @@
 //!   and what of it is seen (`resolve`).
 //! - `shade/` computes the pixels of spheres, many at a time (`run`), by one formula (`equation`):
 //!   within bounds for the kernels that are right, or without (`policy`). Columns turned away from
-//!   the light are found as runs, too, and those that may have a highlight (`spans`).
+//!   the light are found as runs, too, and those that may have a highlight (`columns`).
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
@@ -68,7 +68,6 @@ mod precision;
 mod prepare;
 mod rounding;
 mod shade;
-mod span;
 #[cfg(test)]
 mod tests;
 mod visibility;
@@ -90,8 +89,8 @@ pub(super) use grid::ROWS;
 pub(super) use precision::Precision;
 use prepare::prepared::Prepared;
 use prepare::solids::Body;
+use shade::columns::SphereCache;
 use shade::run::Shading;
-use shade::spans::SpanCache;
 use visibility::coverage::Coverage;
 use visibility::depth::Settled;
 use visibility::resolve::visible;
@@ -124,7 +123,7 @@ pub(super) struct Scratch {
 /// What the shading of spheres needs, kept for the next.
 #[derive(Default)]
 struct Shade {
-    cache: SpanCache,
+    cache: SphereCache,
     shading: Shading,
 }
 
@@ -259,8 +258,8 @@ impl<'f, P: Lines> RowTracer<'f, P> {
                 {
                     let paint = &self.frame.paints[shaded.in_shadow];
                     let Shade { cache, shading } = shade;
-                    let chord = cache.of(shaded, row.number, self.level, self.frame.grid);
-                    row.shade(columns, shaded, &chord, paint, shading);
+                    let sphere_columns = cache.of(shaded, row.number, self.level, self.frame.grid);
+                    row.shade(columns, shaded, &sphere_columns, paint, shading);
                     if !shading.doubts.is_empty() {
                         row.ask(shading.doubts.drain(..), self.pixels);
                     }

@@ -330,17 +330,17 @@ impl ActiveEdges {
         grid: Grid,
     ) -> BandEdges {
         let shape = &table.regions[region];
-        let mut spans = shape.cross(simd, first, grid);
-        if !spans.is_certain {
-            shape.narrow(&mut spans, first, grid);
+        let mut band = shape.cross(simd, first, grid);
+        if !band.is_certain {
+            shape.narrow(&mut band, first, grid);
         }
-        if spans.filled == 0 {
+        if band.filled == 0 {
             return BandEdges::None;
         }
-        spans.put_empty_beside();
-        let ([a, d], [b, c]) = (spans.possible, spans.certain);
+        band.place_empty_rows();
+        let ([a, d], [b, c]) = (band.possible, band.certain);
         self.columns[4 * region..4 * region + 4].copy_from_slice(&[a, b, c, d]);
-        if spans.is_certain {
+        if band.is_certain {
             BandEdges::Certain
         } else {
             BandEdges::Uncertain

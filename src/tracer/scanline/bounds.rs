@@ -14,10 +14,10 @@ use crate::tracer::ladder::{Ladder, Lines, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
+use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
 use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::spans::{BandSpans, SphereSpans};
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
@@ -80,12 +80,12 @@ struct Found {
     highlight: Largest,
     /// The forms that tell shadows.
     forms: Largest,
-    cache: Chorded,
+    cache: ColumnCounts,
 }
 
 /// Pixels that are hit deep enough to be shaded.
 #[derive(Default)]
-struct Chorded {
+struct ColumnCounts {
     all: usize,
     /// Those that a row says to be known, of these those that it says to face the light or not,
     /// and those it says may have a highlight.
@@ -96,12 +96,12 @@ struct Chorded {
     highlight: usize,
 }
 
-impl Chorded {
+impl ColumnCounts {
     /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no
     /// highlight to see.
     fn note(
         &mut self,
-        chord: &SphereSpans,
+        columns: &SphereColumns,
         column: u32,
         light: f64,
         halfway: Option<f64>,
@@ -109,11 +109,11 @@ impl Chorded {
     ) {
         let is_in = |columns: Columns| columns.0 <= column && column < columns.1;
         self.all += 1;
-        if !is_in(chord.known) {
+        if !is_in(columns.known) {
             return;
         }
         self.known += 1;
-        if let Some((inside, inside_faces)) = chord.facing {
+        if let Some((inside, inside_faces)) = columns.facing {
             self.settled += 1;
             // As far as a double-double tells.
             if light.abs() > 1e-25 {
@@ -121,10 +121,10 @@ impl Chorded {
                 assert_eq!(faces, light > 0.0, "column {column}: n·l = {light:e}");
             }
         }
-        self.bright += usize::from(is_in(chord.bright));
+        self.bright += usize::from(is_in(columns.bright));
         if halfway.is_some_and(|halfway| halfway > least) {
             self.highlight += 1;
-            assert!(is_in(chord.bright), "column {column}: n·h = {halfway:?}");
+            assert!(is_in(columns.bright), "column {column}: n·h = {halfway:?}");
         }
     }
 
@@ -167,9 +167,9 @@ impl Case<'_> {
         let m = row_sphere.off.at(y);
         let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
-        let mut cache = BandSpans::NONE;
+        let mut cache = SphereBand::NONE;
         cache.find(simd, row_sphere, below, self.grid);
-        let chord = cache.row(within);
+        let columns = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.grid.place(first);
             let hits = in_row.hits(x);
@@ -202,7 +202,7 @@ impl Case<'_> {
                 let column = first + lane as u32;
                 found
                     .cache
-                    .note(&chord, column, facing, halfway, row_sphere.highlight);
+                    .note(&columns, column, facing, halfway, row_sphere.highlight);
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);

@@ -1,5 +1,6 @@
 //! Regions of the screen, and the edges at which a row enters and leaves them.
 
+pub(super) mod band_columns;
 #[cfg(test)]
 mod bounds;
 pub(super) mod ellipse;

@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;
 
-/// Columns, from the first to before the last.
+/// A half-open range of columns: where it begins, and where it ends.
 pub(crate) type Columns = (u32, u32);
 
 /// Columns and rows of pixels, and their places.

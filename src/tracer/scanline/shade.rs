@@ -1,13 +1,13 @@
-//! Spheres: the pixels of a span of one are shaded many at a time.
+//! Spheres: the pixels of a span that shows a sphere are shaded many at a time.
 
 pub(super) mod caster;
+pub(super) mod columns;
 pub(super) mod equation;
 pub(super) mod lane;
 pub(super) mod light;
 pub(super) mod policy;
 pub(super) mod run;
 pub(super) mod shaded;
-pub(super) mod spans;
 pub(super) mod sphere;
 #[cfg(test)]
 mod tests;

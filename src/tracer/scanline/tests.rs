@@ -218,7 +218,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             }
             assert_eq!(from, size, "{name}, row {row}");
         }
-        // Spans that tell nothing would pass, too.
+        // BandColumns that tell nothing would pass, too.
         assert!(told > asked, "{name}: {told} told, {asked} asked");
     });
 }

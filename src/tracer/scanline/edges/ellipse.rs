@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
-use crate::tracer::scanline::edges::enclosure::{NOWHERE, RunEnclosure};
+use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::scanline::rounding::{MORE, U};
@@ -178,17 +178,12 @@ impl Ellipse {
 
     /// What it has of as many rows as there are lanes.
     #[inline(always)]
-    pub(crate) fn enclose<S: Simd>(
-        &self,
-        simd: S,
-        y: S::f64s,
-        grid: Grid,
-    ) -> RunEnclosure<S::f64s> {
+    pub(crate) fn enclose<S: Simd>(&self, simd: S, y: S::f64s, grid: Grid) -> Enclosure<S::f64s> {
         let zero = S::f64s::splat(simd, 0.0);
         let none = S::f64s::splat(simd, NOWHERE);
         if !self.is_bounded {
             let all = S::f64s::splat(simd, f64::from(grid.size));
-            return RunEnclosure {
+            return Enclosure {
                 possible: [zero, all],
                 certain: [zero, none],
             };
@@ -208,15 +203,15 @@ impl Ellipse {
         let from = in_columns::<S>(grid, middle - half) + self.slack;
         let to = in_columns::<S>(grid, middle + half) - self.slack;
         let certain = [from, is_certain.select(to, none)];
-        RunEnclosure { possible, certain }
+        Enclosure { possible, certain }
     }
 
     /// The same of the row at Y.
     #[inline(always)]
-    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> RunEnclosure<f64> {
+    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> Enclosure<f64> {
         let y = S::f64s::splat(simd, y);
-        let RunEnclosure { possible, certain } = self.enclose(simd, y, grid);
-        RunEnclosure {
+        let Enclosure { possible, certain } = self.enclose(simd, y, grid);
+        Enclosure {
             possible: possible.map(|place| place.as_slice()[0]),
             certain: certain.map(|place| place.as_slice()[0]),
         }
@@ -224,7 +219,7 @@ impl Ellipse {
 
     /// Whether it is known to hold the pixel at X, Y, or known not to.
     pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let RunEnclosure { possible, certain } =
+        let Enclosure { possible, certain } =
             dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
         let column = grid.half + x / 3.0;
         if column < possible[0] || column > possible[1] {

@@ -1,11 +1,13 @@
-//! Where a region begins and ends in some rows, enclosed: before places are rounded to columns.
+//! Enclosures of a region's edges, before they are rounded to columns.
 
-/// Where columns begin and end in as many rows as there are lanes, given in columns: the first at
-/// or after a place, up to another place.
-pub(crate) struct RunEnclosure<V> {
+/// Enclosures of where a region begins and ends, in as many rows as there are lanes. Positions are
+/// given in columns, and both ends are included.
+pub(crate) struct Enclosure<V> {
+    /// No pixel outside of this interval is in the region.
     pub(crate) possible: [V; 2],
+    /// Every pixel in this interval is in the region.
     pub(crate) certain: [V; 2],
 }
 
-/// No column lies up to this place.
+/// An end of an interval without columns: none lies at or before this position.
 pub(crate) const NOWHERE: f64 = -1.0;

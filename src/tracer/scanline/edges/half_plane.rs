@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::number::{Bounded, Real};
-use crate::tracer::scanline::edges::enclosure::{NOWHERE, RunEnclosure};
+use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::rounding::{MORE, U};
@@ -136,8 +136,8 @@ impl HalfPlane {
 
     /// Brings in what it has of as many rows as there are lanes.
     #[inline(always)]
-    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, run: &mut RunEnclosure<S::f64s>) {
-        let RunEnclosure { possible, certain } = run;
+    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut Enclosure<S::f64s>) {
+        let Enclosure { possible, certain } = enclosure;
         match &self.crossing {
             Crossing::Right(root) => {
                 let place = y * root.per_row + root.at;
@@ -177,15 +177,15 @@ impl HalfPlane {
     /// The same of the row at Y.
     #[cfg(test)]
     #[inline(always)]
-    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, run: &mut RunEnclosure<f64>) {
+    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut Enclosure<f64>) {
         let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
-        let mut lanes = RunEnclosure {
-            possible: all(run.possible),
-            certain: all(run.certain),
+        let mut lanes = Enclosure {
+            possible: all(enclosure.possible),
+            certain: all(enclosure.certain),
         };
         self.cut(simd, S::f64s::splat(simd, y), &mut lanes);
         let first = |ends: [S::f64s; 2]| ends.map(|end| end.as_slice()[0]);
-        run.possible = first(lanes.possible);
-        run.certain = first(lanes.certain);
+        enclosure.possible = first(lanes.possible);
+        enclosure.certain = first(lanes.certain);
     }
 }

@@ -16,11 +16,11 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::arena::collect;
+use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
-use crate::tracer::scanline::edges::enclosure::RunEnclosure;
+use crate::tracer::scanline::edges::enclosure::Enclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::{Grid, ROWS, places};
-use crate::tracer::scanline::span::Spans;
 
 /// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
@@ -76,27 +76,27 @@ impl<'f> Region<'f> {
 
     /// The region's columns in the band of rows from `row` on.
     #[inline(always)]
-    pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> Spans {
-        let mut spans = Spans::NONE;
+    pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
+        let mut band = BandColumns::NONE;
         for first in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, first) + grid.place(row);
-            let mut run = match &self.ellipse {
+            let mut enclosure = match &self.ellipse {
                 Some(ellipse) => ellipse.enclose(simd, y, grid),
                 None => {
                     let zero = S::f64s::splat(simd, 0.0);
                     let all = [zero, zero + f64::from(grid.size)];
-                    RunEnclosure {
+                    Enclosure {
                         possible: all,
                         certain: all,
                     }
                 }
             };
             for half_plane in self.half_planes {
-                half_plane.cut(simd, y, &mut run);
+                half_plane.cut(simd, y, &mut enclosure);
             }
             let is_crossed =
                 y.simd_ge(grid.place(self.rows.0)) & y.simd_lt(grid.place(self.rows.1));
-            let RunEnclosure { possible, certain } = run;
+            let Enclosure { possible, certain } = enclosure;
             let possible = [
                 grid.ceil_all::<S>(possible[0]),
                 grid.count_all::<S>(possible[1]),
@@ -105,17 +105,17 @@ impl<'f> Region<'f> {
                 grid.ceil_all::<S>(certain[0]),
                 grid.count_all::<S>(certain[1]),
             ];
-            spans.put(simd, first, is_crossed, possible, certain);
+            band.put(simd, first, is_crossed, possible, certain);
         }
-        spans
+        band
     }
 
     /// Decides the columns in doubt one by one, from the outside in.
-    pub(crate) fn narrow(&self, spans: &mut Spans, row: u32, grid: Grid) {
-        spans.is_certain = true;
+    pub(crate) fn narrow(&self, band: &mut BandColumns, row: u32, grid: Grid) {
+        band.is_certain = true;
         for i in 0..ROWS {
-            let (mut from, mut to) = (spans.possible[0][i], spans.possible[1][i]);
-            let certain = (spans.certain[0][i], spans.certain[1][i]);
+            let (mut from, mut to) = (band.possible[0][i], band.possible[1][i]);
+            let certain = (band.certain[0][i], band.certain[1][i]);
             if (from, to) == certain {
                 continue;
             }
@@ -155,11 +155,11 @@ impl<'f> Region<'f> {
             } else {
                 (from, from)
             };
-            (spans.possible[0][i], spans.possible[1][i]) = (from, to);
-            (spans.certain[0][i], spans.certain[1][i]) = certain;
-            spans.is_certain &= (from, to) == certain;
+            (band.possible[0][i], band.possible[1][i]) = (from, to);
+            (band.certain[0][i], band.certain[1][i]) = certain;
+            band.is_certain &= (from, to) == certain;
             if from == to {
-                spans.filled &= !(1 << i);
+                band.filled &= !(1 << i);
             }
         }
     }
@@ -243,12 +243,12 @@ mod tests {
             });
             let region = Region::new(&half_planes, ellipse, grid);
             for first in (0..SIZE).step_by(ROWS) {
-                let mut spans =
+                let mut band =
                     dispatch!(Level::baseline(), simd => region.cross(simd, first, grid));
                 // As they are crossed, and as they are after the columns in doubt were asked.
                 for narrowed in [false, true] {
                     if narrowed {
-                        region.narrow(&mut spans, first, grid);
+                        region.narrow(&mut band, first, grid);
                     }
                     for row in 0..ROWS {
                         let within = |ends: &[[u32; ROWS]; 2], column: u32| {
@@ -256,8 +256,8 @@ mod tests {
                         };
                         for column in 0..SIZE {
                             let truth = holds(&lines, sphere, column, first + row as u32);
-                            let is_certain = within(&spans.certain, column);
-                            let is_possible = within(&spans.possible, column);
+                            let is_certain = within(&band.certain, column);
+                            let is_possible = within(&band.possible, column);
                             let right = if truth { is_possible } else { !is_certain };
                             assert!(
                                 right,

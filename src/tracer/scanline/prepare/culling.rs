@@ -17,7 +17,7 @@ use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
 const ACROSS: u32 = 16;
 const UP: u32 = 64;
 
-/// Rows, from the first to before the last.
+/// A half-open range of rows.
 pub(crate) type Rows = (u32, u32);
 
 /// The tiles of a screen, each with a depth behind which nothing is seen.
@@ -33,9 +33,11 @@ pub(crate) struct Tiles<'f> {
     across: u32,
 }
 
-/// The columns that a region may have in some rows, and those that it has in all of them.
-struct Run {
+/// The columns of a region in a row of tiles.
+struct TileRowColumns {
+    /// The columns that the region may have in any row of pixels.
     possible: Columns,
+    /// The columns that the region certainly has in all rows of pixels.
     certain: Columns,
 }
 
@@ -87,37 +89,36 @@ impl<'f> Tiles<'f> {
         }
     }
 
-    /// The columns of a region in a row of tiles.
-    fn run(&self, region: &Region<'_>, up: u32) -> Run {
-        dispatch!(self.level, simd => self.run_with(simd, region, up))
+    fn columns(&self, region: &Region<'_>, up: u32) -> TileRowColumns {
+        dispatch!(self.level, simd => self.columns_with(simd, region, up))
     }
 
     #[inline(always)]
-    fn run_with<S: Simd>(&self, simd: S, region: &Region<'_>, up: u32) -> Run {
+    fn columns_with<S: Simd>(&self, simd: S, region: &Region<'_>, up: u32) -> TileRowColumns {
         let (_, (from, to)) = self.of(0, up);
-        let mut run = Run {
+        let mut columns = TileRowColumns {
             possible: (self.grid.size, 0),
             certain: (0, self.grid.size),
         };
         for first in (from..to).step_by(ROWS) {
-            let spans = region.cross(simd, first, self.grid);
+            let band = region.cross(simd, first, self.grid);
             for row in 0..((to - first) as usize).min(ROWS) {
                 let ends = |ends: &[[u32; ROWS]; 2]| (ends[0][row], ends[1][row]);
-                let (possible, certain) = (ends(&spans.possible), ends(&spans.certain));
-                if spans.filled >> row & 1 == 0 {
-                    run.certain = (0, 0);
+                let (possible, certain) = (ends(&band.possible), ends(&band.certain));
+                if band.filled >> row & 1 == 0 {
+                    columns.certain = (0, 0);
                     continue;
                 }
-                run.possible.0 = run.possible.0.min(possible.0);
-                run.possible.1 = run.possible.1.max(possible.1);
-                run.certain.0 = run.certain.0.max(certain.0);
-                run.certain.1 = run.certain.1.min(certain.1);
+                columns.possible.0 = columns.possible.0.min(possible.0);
+                columns.possible.1 = columns.possible.1.max(possible.1);
+                columns.certain.0 = columns.certain.0.max(certain.0);
+                columns.certain.1 = columns.certain.1.min(certain.1);
             }
         }
-        run
+        columns
     }
 
-    /// Which tiles of a row of tiles have columns of a run.
+    /// The tiles of a row that have any of these columns.
     fn reached(&self, (from, to): Columns) -> std::ops::Range<u32> {
         if from < to {
             from / self.width..to.div_ceil(self.width)
@@ -126,7 +127,7 @@ impl<'f> Tiles<'f> {
         }
     }
 
-    /// Which tiles of a row of tiles have no others.
+    /// The tiles of a row that have no columns but these.
     fn covered(&self, (from, to): Columns) -> std::ops::Range<u32> {
         let end = if to == self.grid.size {
             self.across
@@ -139,8 +140,8 @@ impl<'f> Tiles<'f> {
     /// Hides what is behind a solid in the tiles that its outline covers.
     pub(crate) fn hide_behind(&mut self, outline: &Region<'_>, depth: &Depth<'_>) {
         for up in self.rows_of_tiles(outline.rows()) {
-            let run = self.run(outline, up);
-            for across in self.covered(run.certain) {
+            let columns = self.columns(outline, up);
+            for across in self.covered(columns.certain) {
                 let (_, most) = depth.bounds(None, self.rectangle(across, up));
                 let before = &mut self.seen_before[(up * self.across + across) as usize];
                 *before = before.min(most);
@@ -162,8 +163,9 @@ impl<'f> Tiles<'f> {
     /// The rows of a region between the first tile and the last in which something holds.
     fn rows_where(&self, region: &Region<'_>, holds: impl Fn(u32, u32) -> bool) -> Rows {
         let is_seen = |up: &u32| {
-            let run = self.run(region, *up);
-            self.reached(run.possible).any(|across| holds(across, *up))
+            let columns = self.columns(region, *up);
+            self.reached(columns.possible)
+                .any(|across| holds(across, *up))
         };
         let mut tiles = self.rows_of_tiles(region.rows());
         let first = tiles.find(is_seen);
@@ -188,8 +190,8 @@ impl<'f> Tiles<'f> {
         let tiles = Tiles::new(self.grid, self.level, arena);
         tiles.seen_before.fill(f64::NEG_INFINITY);
         for up in self.rows_of_tiles(region.rows()) {
-            let run = self.run(region, up);
-            for across in self.reached(run.possible) {
+            let columns = self.columns(region, up);
+            for across in self.reached(columns.possible) {
                 let [low, high] = self.rectangle(across, up).y;
                 let number = self.number(across, up);
                 let is_hidden = least(low).min(least(high)) > self.seen_before[number];
@@ -207,7 +209,7 @@ impl<'f> Tiles<'f> {
         let covering = arena.alloc_slice_fill_copy(self.seen_before.len(), u32::MAX);
         for (shadow, region) in shadows.iter().enumerate() {
             for up in self.rows_of_tiles(region.rows()) {
-                for across in self.covered(self.run(region, up).certain) {
+                for across in self.covered(self.columns(region, up).certain) {
                     let first = &mut covering[self.number(across, up)];
                     *first = (*first).min(shadow as u32);
                 }

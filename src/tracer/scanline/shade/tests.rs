@@ -6,10 +6,10 @@ use crate::tracer::decision::Decision;
 use crate::tracer::ladder::{Ladder, Pixels as _};
 use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Body;
+use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::run::{Run, Shading, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::spans::SpanCache;
 use crate::tracer::scanline::tests::{each_frame, lit};
 
 const SIZE: u32 = 70;
@@ -30,11 +30,11 @@ fn check(
     counts: &mut Counts,
 ) {
     let frame = &tracer.frame;
-    let mut cache = SpanCache::default();
+    let mut cache = SphereCache::default();
     cache.begin(frame.shaded_spheres);
     for row in 0..SIZE {
-        let chord = cache.of(shaded, row, level, frame.grid);
-        let (from, to) = chord.known;
+        let columns = cache.of(shaded, row, level, frame.grid);
+        let (from, to) = columns.known;
         let count = (to - from) as usize;
         let mut samples = vec![0.0; 3 * count];
         let mut decisions = vec![Decision::Background; count];
@@ -44,8 +44,8 @@ fn check(
             grid: frame.grid,
             y: frame.grid.place(row),
             from,
-            zones: chord.zones,
-            bright: chord.bright,
+            zones: columns.zones,
+            bright: columns.bright,
             is_facing: !shaded.sphere.shadows,
             samples: &mut samples,
             decisions: Some(&mut decisions),

@@ -1,6 +1,6 @@
 //! The depth test: which of several solids is nearest where no plane keeps them apart.
 //!
-//! It bounds the depths of each solid over a run of columns. Where the bounds overlap, the run is
+//! It bounds the depths of each solid over an interval of columns. Where the bounds overlap, the interval is
 //! halved, down to single pixels, which are then asked by themselves. A half is asked only about
 //! the solids that can be in front there.
 
@@ -14,11 +14,11 @@ use crate::tracer::scanline::visibility::visible::{DepthTest, DepthTests, Shown,
 #[derive(Default)]
 pub(crate) struct Settled {
     parts: Vec<(Columns, Shown)>,
-    /// The solids that can be in front, run within run: the innermost last.
+    /// The solids that can be in front, interval within interval: the innermost last.
     near: Vec<Near>,
 }
 
-/// A solid of a test, by its place there, and a lower bound on its depth in a run.
+/// A solid of a test, by its place there, and a lower bound on its depth in an interval.
 struct Near {
     place: usize,
     least: f64,
@@ -120,7 +120,7 @@ fn front(
 ) -> Front {
     let view = frame.solids(test.mirrored);
     let surface = frame.floor.as_ref().map(|floor| floor.depth_at(y));
-    let run = Rectangle {
+    let interval = Rectangle {
         x: [columns.0, columns.1 - 1].map(|column| frame.grid.place(column)),
         y: [y, y],
     };
@@ -143,7 +143,7 @@ fn front(
             *kept = *begins;
             continue;
         }
-        let (least, most) = solid.depth.bounds(other.facet, run);
+        let (least, most) = solid.depth.bounds(other.facet, interval);
         *kept = least;
         // The rays that the surface mirrors begin there: a solid before that is not met.
         if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)

@@ -16,7 +16,7 @@ pub(in crate::tracer) struct RowHistory {
     next: Vec<Filled>,
 }
 
-/// Columns of one colour.
+/// An interval of columns of one colour.
 #[derive(Clone, Copy)]
 struct Filled {
     columns: Columns,
@@ -75,16 +75,16 @@ mod tests {
 
     const COLUMNS: u32 = 40;
 
-    /// A row of pixels, each with one of three colours, in runs.
-    fn runs(random: &mut Random) -> Vec<(Columns, Bits)> {
-        let mut runs = Vec::new();
+    /// A row of pixels, cut into intervals of one colour out of three.
+    fn intervals(random: &mut Random) -> Vec<(Columns, Bits)> {
+        let mut intervals = Vec::new();
         let mut from = 0;
         while from < COLUMNS {
             let to = (from + 1 + random.below(12) as u32).min(COLUMNS);
-            runs.push(((from, to), (0, random.below(3) as u32)));
+            intervals.push(((from, to), (0, random.below(3) as u32)));
             from = to;
         }
-        runs
+        intervals
     }
 
     #[test]
@@ -94,23 +94,23 @@ mod tests {
         // No colour is that of a row that nobody has written.
         let mut pixels = [(1, 0); COLUMNS as usize];
         for round in 0..2000 {
-            // Between two runs there may be pixels that are not filled but shaded.
-            let runs = runs(&mut random);
-            let is_filled: Vec<bool> = runs.iter().map(|_| random.below(6) > 0).collect();
+            // Between two intervals there may be pixels that are not filled but shaded.
+            let intervals = intervals(&mut random);
+            let is_filled: Vec<bool> = intervals.iter().map(|_| random.below(6) > 0).collect();
             if round % 50 == 49 {
                 history.clear();
                 pixels.fill((2, 0));
             }
             history.is_written = false;
             let mut written = Vec::new();
-            for (&(columns, color), filled) in runs.iter().zip(&is_filled) {
+            for (&(columns, color), filled) in intervals.iter().zip(&is_filled) {
                 if *filled {
                     history.fill(columns, color, |(from, to)| written.extend(from..to));
                 }
             }
             history.finish();
             assert_eq!(history.is_written, !written.is_empty());
-            for (&((from, to), color), filled) in runs.iter().zip(&is_filled) {
+            for (&((from, to), color), filled) in intervals.iter().zip(&is_filled) {
                 for column in from..to {
                     let pixel = &mut pixels[column as usize];
                     if *filled {

@@ -9,10 +9,10 @@ use crate::tracer::in_doubt::InDoubt;
 use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::precision::Precision;
+use crate::tracer::scanline::shade::columns::{SphereColumns, bit_of};
 use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::run::{Run, Shading, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::spans::{SphereSpans, bit_of};
 use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
 
@@ -99,19 +99,25 @@ impl<'r> Row<'r> {
         &mut self,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
-        chord: &SphereSpans,
+        sphere_columns: &SphereColumns,
         in_shadow: &'r Paint,
         shading: &mut Shading,
     ) {
-        let known = both(columns, chord.known);
+        let known = both(columns, sphere_columns.known);
         shading.doubts.extend(columns.0..known.0);
         shading.doubts.extend(known.1..columns.1);
-        let facing = match chord.facing {
+        let facing = match sphere_columns.facing {
             _ if !shaded.sphere.shadows => Some((known, true)),
             facing => facing,
         };
         let mut shade = |row: &mut Self, columns, is_facing| {
-            row.shade_known(columns, shaded, (chord, is_facing), in_shadow, shading);
+            row.shade_known(
+                columns,
+                shaded,
+                (sphere_columns, is_facing),
+                in_shadow,
+                shading,
+            );
         };
         match facing {
             None => shade(self, known, false),
@@ -138,7 +144,7 @@ impl<'r> Row<'r> {
         &mut self,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
-        (chord, is_facing): (&SphereSpans, bool),
+        (sphere_columns, is_facing): (&SphereColumns, bool),
         in_shadow: &Paint,
         shading: &mut Shading,
     ) {
@@ -147,13 +153,13 @@ impl<'r> Row<'r> {
         }
         self.mark_written();
         shading.in_reach.clear();
-        if chord.shaders != 0 {
+        if sphere_columns.shaders != 0 {
             let place = |column| self.grid.place(column);
             let ends = (place(columns.0), place(columns.1 - 1));
             let stretch = shaded.sphere.stretch(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
-                chord.shaders & bit_of(*number) != 0 && !caster.misses(&stretch)
+                sphere_columns.shaders & bit_of(*number) != 0 && !caster.misses(&stretch)
             });
             shading.in_reach.extend(near.map(|(number, _)| number));
         }
@@ -162,8 +168,8 @@ impl<'r> Row<'r> {
             grid: self.grid,
             y: self.y,
             from: columns.0,
-            zones: chord.zones,
-            bright: chord.bright,
+            zones: sphere_columns.zones,
+            bright: sphere_columns.bright,
             is_facing,
             samples: &mut self.samples[3 * range.start..3 * range.end],
             decisions: self.decisions.as_mut().map(|all| &mut all[range]),

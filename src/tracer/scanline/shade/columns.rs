@@ -25,19 +25,19 @@ use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
 /// it is found to be wrong.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;
 
-/// In each of some rows, the columns of a run.
-type Runs = [[u32; ROWS]; 2];
+/// A half-open range of columns in each row of a band: where it begins, and where it ends.
+type Intervals = [[u32; ROWS]; 2];
 
-/// What is known of a sphere's pixels in some rows.
+/// What is known of a sphere's pixels in a band of rows.
 #[derive(Clone)]
-pub(crate) struct BandSpans {
+pub(crate) struct SphereBand {
     /// Those that are hit deep enough inside the outline for f64 to say anything.
-    known: Runs,
+    known: Intervals,
     /// Those in each zone but the outermost.
-    zones: [Runs; ZONES - 1],
+    zones: [Intervals; ZONES - 1],
     facing: Arcs,
     /// Those outside of which there is certainly no highlight.
-    bright: Runs,
+    bright: Intervals,
     /// The casters that may throw a shadow on any of them, by [`bit_of`].
     shaders: u64,
 }
@@ -51,7 +51,7 @@ pub(crate) fn bit_of(caster: usize) -> u64 {
 #[derive(Clone)]
 struct Arcs {
     /// Where it is positive, if it is concave; where it is negative, if it is convex.
-    inside: Runs,
+    inside: Intervals,
     is_concave: bool,
     /// Bit by bit, the rows of which this is certain.
     settled: u64,
@@ -59,7 +59,7 @@ struct Arcs {
 
 /// What is known of a sphere's pixels in a row.
 #[derive(Clone, Copy)]
-pub(crate) struct SphereSpans {
+pub(crate) struct SphereColumns {
     pub(crate) known: Columns,
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
@@ -72,19 +72,19 @@ pub(crate) struct SphereSpans {
 
 /// What is known of spheres in the rows that are traced now, found when it is first asked for.
 #[derive(Default)]
-pub(crate) struct SpanCache {
-    cache: Vec<BandSpans>,
+pub(crate) struct SphereCache {
+    cache: Vec<SphereBand>,
     /// For each, the first of the rows that it is of.
     first: Vec<Option<u32>>,
 }
 
-impl SpanCache {
+impl SphereCache {
     /// Prepares for so many spheres of a frame.
     pub(crate) fn begin(&mut self, count: usize) {
         self.first.clear();
         self.first.resize(count, None);
         if self.cache.len() < count {
-            self.cache.resize(count, BandSpans::NONE);
+            self.cache.resize(count, SphereBand::NONE);
         }
     }
 
@@ -95,7 +95,7 @@ impl SpanCache {
         row: u32,
         level: Level,
         grid: Grid,
-    ) -> SphereSpans {
+    ) -> SphereColumns {
         let (number, sphere) = (shaded.number, &shaded.sphere);
         let within = row % ROWS as u32;
         let first = row - within;
@@ -109,8 +109,8 @@ impl SpanCache {
     }
 }
 
-impl BandSpans {
-    pub(crate) const NONE: BandSpans = BandSpans {
+impl SphereBand {
+    pub(crate) const NONE: SphereBand = SphereBand {
         known: [[0; ROWS]; 2],
         zones: [[[0; ROWS]; 2]; ZONES - 1],
         facing: Arcs {
@@ -123,14 +123,14 @@ impl BandSpans {
     };
 
     /// In one of the rows.
-    pub(crate) fn row(&self, row: usize) -> SphereSpans {
-        let of = |runs: &Runs| (runs[0][row], runs[1][row]);
+    pub(crate) fn row(&self, row: usize) -> SphereColumns {
+        let of = |intervals: &Intervals| (intervals[0][row], intervals[1][row]);
         let Arcs {
             inside,
             is_concave,
             settled,
         } = &self.facing;
-        SphereSpans {
+        SphereColumns {
             known: of(&self.known),
             zones: [of(&self.zones[0]), of(&self.zones[1])],
             bright: of(&self.bright),
@@ -165,7 +165,7 @@ impl BandSpans {
     pub(crate) fn find<S: Simd>(&mut self, simd: S, sphere: &RowSphere, first: u32, grid: Grid) {
         self.facing.is_concave = sphere.light.is_concave == Some(true);
         self.facing.settled = 0;
-        self.bright = BandSpans::NONE.bright;
+        self.bright = SphereBand::NONE.bright;
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, lane) + grid.place(first);
             let m = sphere.off.of_rows::<S>(y);
@@ -216,7 +216,7 @@ struct InRows<'b, S: Simd> {
     squared: S::f64s,
 }
 
-/// Where runs begin and end: whole numbers of columns.
+/// Where an interval begins and ends in as many rows as there are lanes: whole numbers of columns.
 type Ends<V> = [V; 2];
 
 #[inline(always)]
@@ -225,9 +225,9 @@ fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> E
 }
 
 #[inline(always)]
-fn put<S: Simd>(ends: Ends<S::f64s>, runs: &mut Runs, lane: usize) {
-    put_columns::<S>(ends[0], &mut runs[0][lane..]);
-    put_columns::<S>(ends[1], &mut runs[1][lane..]);
+fn put<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
+    put_columns::<S>(ends[0], &mut intervals[0][lane..]);
+    put_columns::<S>(ends[1], &mut intervals[1][lane..]);
 }
 
 // No closures below: see `shade/run.rs`.

@@ -1,35 +1,34 @@
-//! Parts of neighbouring rows of pixels, as far as they are known.
+//! The columns of a region in a band of rows, as far as they are known.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::scanline::grid::{ROWS, put_columns};
 
-/// One bit for each of them.
+/// A bit for each row of a band.
 const ALL: u64 = (1 << ROWS) - 1;
 
-/// In each of some rows, a run of columns of which some are certain and, at both ends, some only
-/// possible: `possible` holds `certain`. Every run goes from its first column to before its last;
-/// one without columns begins and ends in the same place.
-pub(crate) struct Spans {
+/// The columns of a region in each row of a band: where they begin, and where they end. Outside of
+/// `possible` no pixel is in the region; all pixels of `certain`, which lies within, are.
+pub(crate) struct BandColumns {
     pub(crate) possible: [[u32; ROWS]; 2],
     pub(crate) certain: [[u32; ROWS]; 2],
-    /// Bit by bit, the rows that have columns.
+    /// A bit for each row: whether it has possible columns.
     pub(crate) filled: u64,
-    /// Whether all columns are certain.
+    /// Whether all possible columns are certain.
     pub(crate) is_certain: bool,
 }
 
-impl Spans {
-    pub(crate) const NONE: Spans = Spans {
+impl BandColumns {
+    pub(crate) const NONE: BandColumns = BandColumns {
         possible: [[0; ROWS]; 2],
         certain: [[0; ROWS]; 2],
         filled: 0,
         is_certain: true,
     };
 
-    /// The columns of as many rows as there are lanes, from one on: whole numbers, of rows that
-    /// have any at all.
+    /// Stores the columns of as many rows as there are lanes, from row `first` of the band on. Rows
+    /// that are not `is_crossed` have none.
     #[inline(always)]
     pub(crate) fn put<S: Simd>(
         &mut self,
@@ -46,18 +45,18 @@ impl Spans {
         put_columns::<S>(from, &mut self.possible[0][first..]);
         put_columns::<S>(to, &mut self.possible[1][first..]);
         let [begin, end] = certain;
-        let is_known = is_filled & begin.simd_lt(end);
-        let begin = is_known.select(begin, from);
-        let end = is_known.select(end, from);
+        let is_some = is_filled & begin.simd_lt(end);
+        let begin = is_some.select(begin, from);
+        let end = is_some.select(end, from);
         put_columns::<S>(begin, &mut self.certain[0][first..]);
         put_columns::<S>(end, &mut self.certain[1][first..]);
         self.filled |= is_filled.to_bitmask() << first;
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
 
-    /// Puts a run without columns where that of the nearest row begins that has some, below or else
-    /// above: there it is in order among the other crossings of its row, mostly.
-    pub(crate) fn put_empty_beside(&mut self) {
+    /// Lets each row without columns begin and end where the nearest row with columns begins, below
+    /// or else above: there the row's edges are mostly in order among the other edges.
+    pub(crate) fn place_empty_rows(&mut self) {
         let mut empty = !self.filled & ALL;
         if empty == ALL {
             return;
@@ -70,9 +69,9 @@ impl Spans {
             } else {
                 below.ilog2()
             };
-            let place = self.possible[0][next as usize];
+            let column = self.possible[0][next as usize];
             for ends in [&mut self.possible, &mut self.certain] {
-                (ends[0][row as usize], ends[1][row as usize]) = (place, place);
+                (ends[0][row as usize], ends[1][row as usize]) = (column, column);
             }
             empty &= empty - 1;
         }
