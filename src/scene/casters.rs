@@ -1,17 +1,18 @@
-//! Which solids can throw a shadow on which: no turning of the scene changes that, and most cannot.
+//! Which solids can cast a shadow on which: most cannot, and turning the scene does not change that.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::hull::{Hull, MORE, each_pair_along, hulls};
+use super::hull::{Hull, MARGIN, each_overlapping_pair, hulls};
 use super::{Sphere, Surface, Tetrahedron};
 
-/// For each sphere and each face, the other solids that may stand between a point of it and the
-/// light; all others certainly do not.
+/// The casters of each sphere and each face: the solids that may stand between a point of it and the
+/// light.
 ///
-/// Hidden solids are left out: what these shade, what hides them does, and nobody sees a shadow on
-/// them. So are faces turned away from the light.
+/// Hidden solids are neither casters nor receivers: their shadows lie within the shadows of the
+/// solids that hide them, and no ray meets them first. Faces turned away from the light have no
+/// casters: they are dark anyway.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Casters {
     on_spheres: Vec<Vec<u16>>,
@@ -38,20 +39,20 @@ impl Casters {
             on_spheres: vec![Vec::new(); spheres.len()],
             on_faces: vec![Default::default(); tetrahedra.len()],
         };
-        each_pair_along(&hulls, l.any_orthonormal_vector(), |a, b| {
+        each_overlapping_pair(&hulls, l.any_orthonormal_vector(), |a, b| {
             if hidden[a] || hidden[b] {
                 return;
             }
             let Hull { center, radius } = hulls[a];
             let other = &hulls[b];
             let between = other.center - center;
-            let slack = (other.center.abs() + center.abs()).element_sum() * (MORE - 1.0);
-            let reach = (other.radius + radius) * MORE + slack;
-            if between.cross(l).length_squared() > reach * reach * MORE {
+            let slack = (other.center.abs() + center.abs()).element_sum() * (MARGIN - 1.0);
+            let touching = (other.radius + radius) * MARGIN + slack;
+            if between.cross(l).length_squared() > touching * touching * MARGIN {
                 return;
             }
             let ahead = between.dot(l);
-            let pairs = [(a, b, ahead >= -reach), (b, a, ahead <= reach)];
+            let pairs = [(a, b, ahead >= -touching), (b, a, ahead <= touching)];
             for (receiver, caster, may) in pairs {
                 if !may {
                     continue;
@@ -63,7 +64,7 @@ impl Casters {
                         for (list, face) in lists.zip(&faces[tetrahedron]) {
                             if face
                                 .as_ref()
-                                .is_some_and(|face| face.may_be_shaded_by(&hulls[caster]))
+                                .is_some_and(|face| face.may_be_shadowed_by(&hulls[caster]))
                             {
                                 list.push(caster as u16);
                             }
@@ -79,7 +80,7 @@ impl Casters {
         casters
     }
 
-    /// Those on a sphere, or on a face of a tetrahedron.
+    /// The casters of a sphere, or of a face of a tetrahedron.
     pub(crate) fn on(&self, solid: usize, face: Option<usize>) -> &[u16] {
         match (self.on_spheres.get(solid), face) {
             (Some(casters), _) => casters,
@@ -89,52 +90,56 @@ impl Casters {
     }
 }
 
-/// A face that is turned to the light: what shades it is within these planes or crosses them.
+/// A face that is turned to the light. Its casters reach into the prism that stands on the face and
+/// extends toward the light.
 struct LitFace {
-    /// The face's own, and those of its edges along the way to the light: outward, but for the
-    /// first.
-    planes: [Option<OuterPlane>; 4],
+    /// The planes of the prism: the face's own, and one along each of its edges. `None` where f64
+    /// does not tell which side is inside.
+    planes: [Option<PrismPlane>; 4],
 }
 
-/// A plane, of which a side holds nothing that matters.
-struct OuterPlane {
+/// A plane of a prism.
+struct PrismPlane {
     at: DVec3,
-    /// Toward that side, of any length.
-    way: DVec3,
+    /// Out of the prism, of length `length`.
+    normal: DVec3,
     length: f64,
-    /// A bound on the error of `way`.
+    /// A bound on the error of `normal`.
     error: f64,
 }
 
-impl OuterPlane {
-    /// The plane through `at` along two vectors, each the difference of two points that are no
-    /// farther away than `reach`, or of length 1; `inner` lies on the side that matters. `None`
-    /// where f64 does not tell which side that is.
-    fn new(at: DVec3, [a, b]: [DVec3; 2], inner: DVec3, reach: f64) -> Option<Self> {
-        let way = a.cross(b);
-        // Each difference is off by u of its points, a product of two by that of either times the
-        // other; a cross product rounds three times. 16 u of these magnitudes is more than that.
+impl PrismPlane {
+    /// The plane through `at` along two vectors, each of length 1 or the difference of two points at
+    /// most `magnitude` from the origin; `inner` lies on the inner side. `None` where f64 does not
+    /// tell which side that is.
+    fn new(at: DVec3, [a, b]: [DVec3; 2], inner: DVec3, magnitude: f64) -> Option<Self> {
+        let normal = a.cross(b);
+        // A difference rounds by u of its points, which the product multiplies by the other factor;
+        // a cross product rounds three times. 16 u of these magnitudes is more than the sum.
         let magnitudes =
-            reach * (a.abs() + b.abs()).element_sum() + (a.length() + reach) * b.length();
+            magnitude * (a.abs() + b.abs()).element_sum() + (a.length() + magnitude) * b.length();
         let error = 16.0 * f64::EPSILON * magnitudes;
-        let plane = OuterPlane {
+        let plane = PrismPlane {
             at,
-            length: way.length() * MORE,
-            way,
+            length: normal.length() * MARGIN,
+            normal,
             error,
         };
         let inside = plane.height(inner)?;
-        Some(OuterPlane {
-            way: if inside > 0.0 { -plane.way } else { plane.way },
-            ..plane
-        })
+        Some(if inside > 0.0 { plane.flipped() } else { plane })
     }
 
-    /// How far a point is on the outer side, times `length`; `None` where the sign of that is not
-    /// certain.
+    fn flipped(self) -> Self {
+        PrismPlane {
+            normal: -self.normal,
+            ..self
+        }
+    }
+
+    /// The height of a point above the plane, times `length`; `None` where its sign is in doubt.
     fn height(&self, point: DVec3) -> Option<f64> {
         let from = point - self.at;
-        let height = self.way.dot(from);
+        let height = self.normal.dot(from);
         (height.abs() > self.slack(point)).then_some(height)
     }
 
@@ -143,33 +148,30 @@ impl OuterPlane {
         (self.error + 8.0 * f64::EPSILON * self.length) * magnitudes * 2.0
     }
 
-    /// Whether all of a ball is on the outer side.
+    /// Whether a ball certainly lies above the plane.
     fn is_outside(&self, ball: &Hull) -> bool {
-        let height = self.way.dot(ball.center - self.at);
-        height > ball.radius * MORE * (self.length + self.error) + self.slack(ball.center)
+        let height = self.normal.dot(ball.center - self.at);
+        height > ball.radius * MARGIN * (self.length + self.error) + self.slack(ball.center)
     }
 }
 
 impl LitFace {
-    /// Face `k`, where `l` is the way to the light, of length 1.
+    /// Face `k`, with `l` of length 1.
     fn new(tetrahedron: &Tetrahedron, k: usize, l: DVec3) -> Self {
         let v = tetrahedron.vertices;
         let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| v[i]);
-        let reach = v.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
+        let magnitude = v.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
         let edge = |from: DVec3, to: DVec3, third: DVec3| {
-            OuterPlane::new(from, [to - from, l], third, reach.max(1.0))
+            PrismPlane::new(from, [to - from, l], third, magnitude.max(1.0))
         };
-        // What shades a face lies on the other side of it than the solid does.
-        let own = OuterPlane::new(a, [b - a, c - a], v[k], reach).map(|plane| OuterPlane {
-            way: -plane.way,
-            ..plane
-        });
+        // The prism lies on the other side of the face than the solid.
+        let own = PrismPlane::new(a, [b - a, c - a], v[k], magnitude).map(PrismPlane::flipped);
         LitFace {
             planes: [own, edge(a, b, c), edge(b, c, a), edge(c, a, b)],
         }
     }
 
-    fn may_be_shaded_by(&self, caster: &Hull) -> bool {
+    fn may_be_shadowed_by(&self, caster: &Hull) -> bool {
         let mut planes = self.planes.iter().flatten();
         !planes.any(|plane| plane.is_outside(caster))
     }
@@ -178,14 +180,14 @@ impl LitFace {
 /// Cells along a side of the surface.
 const CELLS: usize = 32;
 
-/// The solids that may throw a shadow on the surface, by where they may.
+/// The casters of the surface, for each cell of a grid on it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SurfaceCasters {
     half_width: f64,
-    /// Where each cell's solids begin, and where the last one's end.
+    /// For each cell, the index of its first caster in `casters`; then the length of `casters`.
     starts: Vec<u32>,
-    solids: Vec<u16>,
-    /// Those of all cells.
+    casters: Vec<u16>,
+    /// The casters of any cell.
     all: Vec<u16>,
 }
 
@@ -202,22 +204,22 @@ impl SurfaceCasters {
             height, half_width, ..
         } = *surface;
         let l = to_light.normalize();
-        // The cells that a solid may shade any point of, or of a neighbour: which cell a point is
-        // in need not be known better than that.
+        // The cells that a solid's shadow may reach, and their neighbours: so `near` may take a
+        // neighbour for the cell of a point.
         let cells = |hull: &Hull| {
             let up = (hull.center.y - height) * l.y.signum();
-            let slack = (hull.center.y.abs() + height.abs()) * (MORE - 1.0);
-            if up < -(hull.radius * MORE + slack) {
+            let slack = (hull.center.y.abs() + height.abs()) * (MARGIN - 1.0);
+            if up < -(hull.radius * MARGIN + slack) {
                 return None;
             }
-            // The hull's shadow is an ellipse, as long as a diameter divided by the light's rise.
-            let way = (hull.center.y - height) / l.y;
-            let middle = hull.center - l * way;
-            let magnitudes = hull.center.abs().element_sum() + way.abs();
-            let reach = (hull.radius / l.y.abs()) * MORE + magnitudes * (MORE - 1.0);
+            // The hull's shadow is an ellipse; half its length is the radius over the light's rise.
+            let distance = (hull.center.y - height) / l.y;
+            let middle = hull.center - l * distance;
+            let magnitudes = hull.center.abs().element_sum() + distance.abs();
+            let half = (hull.radius / l.y.abs()) * MARGIN + magnitudes * (MARGIN - 1.0);
             let ends = |middle: f64| {
                 let cell = |x: f64| (x / half_width + 1.0) / 2.0 * CELLS as f64;
-                let (from, to) = (cell(middle - reach) - 2.0, cell(middle + reach) + 2.0);
+                let (from, to) = (cell(middle - half) - 2.0, cell(middle + half) + 2.0);
                 if from.is_nan() || to.is_nan() {
                     return 0..CELLS;
                 }
@@ -247,37 +249,36 @@ impl SurfaceCasters {
             }
         }
         let mut starts = vec![0];
-        let mut solids = Vec::new();
+        let mut casters = Vec::new();
         for cell in of_cells {
-            solids.extend(cell);
-            starts.push(solids.len() as u32);
+            casters.extend(cell);
+            starts.push(casters.len() as u32);
         }
         SurfaceCasters {
             half_width,
             starts,
-            solids,
+            casters,
             all,
         }
     }
 
-    /// Those that may shade any point.
+    /// The casters of all points.
     pub(crate) fn all(&self) -> &[u16] {
         &self.all
     }
 
-    /// Those that may shade a point of the surface of which x and z are known to lie between two
-    /// numbers.
+    /// The casters of a point of the surface whose x and z lie between these bounds.
     pub(crate) fn near(&self, x: (f64, f64), z: (f64, f64)) -> &[u16] {
         let cell = |(from, to): (f64, f64)| {
             let cell = |x: f64| (x / self.half_width + 1.0) / 2.0 * CELLS as f64;
-            let is_known = cell(to) - cell(from) < 1.0;
-            // A point of the surface is in one of its cells, or less than a cell beside it.
-            is_known.then(|| (cell(from).max(0.0) as usize).min(CELLS - 1))
+            let is_narrow = cell(to) - cell(from) < 1.0;
+            // The point is in this cell or in a neighbour.
+            is_narrow.then(|| (cell(from).max(0.0) as usize).min(CELLS - 1))
         };
         match (cell(x), cell(z)) {
             (Some(column), Some(row)) => {
                 let cell = row * CELLS + column;
-                &self.solids[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+                &self.casters[self.starts[cell] as usize..self.starts[cell + 1] as usize]
             }
             _ => &self.all,
         }

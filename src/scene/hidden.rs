@@ -1,21 +1,21 @@
-//! Which solids lie inside of others: nobody ever sees them, nor their shadows.
+//! Which solids lie inside of others: neither they nor their shadows are ever seen.
 //!
-//! Eye rays, mirrored ones and those from the light come from outside of all solids, or leave one
-//! that is seen. They meet what is inside of a solid after that solid; where both are met at once,
-//! the earlier in the scene's order is seen.
+//! Every ray begins outside of all solids, or leaves a solid that is seen. So a ray meets a solid
+//! before it meets another one inside; where it meets both at once, the earlier in the scene's
+//! order is seen.
 
 use std::cmp::Ordering;
 
 use dashu_ratio::Relaxed;
 use glam::DVec3;
 
-use super::hull::{MORE, each_pair_along, hulls};
+use super::hull::{MARGIN, each_overlapping_pair, hulls};
 use super::rational::{Plane, dot, exact, minus, sign};
 use super::{Sphere, Tetrahedron};
 
-/// A solid of a scene.
+/// A solid of either kind.
 #[derive(Clone, Copy)]
-enum Solid<'s> {
+enum AnySolid<'s> {
     Sphere(&'s Sphere),
     Tetrahedron(&'s Tetrahedron),
 }
@@ -25,19 +25,21 @@ enum Solid<'s> {
 pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
     let hulls = hulls(spheres, tetrahedra);
     let solid = |number: usize| match spheres.get(number) {
-        Some(sphere) => Solid::Sphere(sphere),
-        None => Solid::Tetrahedron(&tetrahedra[number - spheres.len()]),
+        Some(sphere) => AnySolid::Sphere(sphere),
+        None => AnySolid::Tetrahedron(&tetrahedra[number - spheres.len()]),
     };
     let mut hidden = vec![false; hulls.len()];
-    each_pair_along(&hulls, DVec3::X, |a, b| {
+    each_overlapping_pair(&hulls, DVec3::X, |a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
             let (small, large) = (&hulls[inner], &hulls[outer]);
-            let slack = (small.center.abs() + large.center.abs()).element_sum() * (MORE - 1.0);
+            let slack = (small.center.abs() + large.center.abs()).element_sum() * (MARGIN - 1.0);
             let distance = small.center.distance(large.center);
             // Of a tetrahedron the hull is larger than need be, and not all of it need be inside.
             let may = match (solid(inner), solid(outer)) {
-                (Solid::Sphere(_), _) => distance + small.radius <= large.radius * MORE + slack,
-                (Solid::Tetrahedron(_), _) => distance <= large.radius * MORE + slack,
+                (AnySolid::Sphere(_), _) => {
+                    distance + small.radius <= large.radius * MARGIN + slack
+                }
+                (AnySolid::Tetrahedron(_), _) => distance <= large.radius * MARGIN + slack,
             };
             if may && !hidden[inner] && !hidden[outer] {
                 hidden[inner] = is_inside(solid(inner), solid(outer), outer < inner);
@@ -48,7 +50,7 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
 }
 
 /// Whether a solid lies inside of another: in its interior, or where its border belongs to it.
-fn is_inside(inner: Solid<'_>, outer: Solid<'_>, closed: bool) -> bool {
+fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
     let is_in = |depth: &Relaxed| match sign(depth) {
         Ordering::Greater => true,
         Ordering::Equal => closed,
@@ -56,26 +58,26 @@ fn is_inside(inner: Solid<'_>, outer: Solid<'_>, closed: bool) -> bool {
     };
     let number = |x: f64| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO);
     match (inner, outer) {
-        (Solid::Sphere(inner), Solid::Sphere(outer)) => {
+        (AnySolid::Sphere(inner), AnySolid::Sphere(outer)) => {
             let between = minus(&exact(inner.center), &exact(outer.center));
             let gap = number(outer.radius) - number(inner.radius);
             !sign(&gap).is_lt() && is_in(&(&gap * &gap - dot(&between, &between)))
         }
-        (Solid::Tetrahedron(inner), Solid::Sphere(outer)) => {
+        (AnySolid::Tetrahedron(inner), AnySolid::Sphere(outer)) => {
             let (center, radius) = (exact(outer.center), number(outer.radius));
             inner.vertices.iter().all(|vertex| {
                 let from = minus(&exact(*vertex), &center);
                 is_in(&(&radius * &radius - dot(&from, &from)))
             })
         }
-        (inner, Solid::Tetrahedron(outer)) => {
+        (inner, AnySolid::Tetrahedron(outer)) => {
             let points: Vec<DVec3> = match inner {
-                Solid::Sphere(sphere) => vec![sphere.center],
-                Solid::Tetrahedron(tetrahedron) => tetrahedron.vertices.to_vec(),
+                AnySolid::Sphere(sphere) => vec![sphere.center],
+                AnySolid::Tetrahedron(tetrahedron) => tetrahedron.vertices.to_vec(),
             };
             let radius = match inner {
-                Solid::Sphere(sphere) => number(sphere.radius),
-                Solid::Tetrahedron(_) => Relaxed::ZERO,
+                AnySolid::Sphere(sphere) => number(sphere.radius),
+                AnySolid::Tetrahedron(_) => Relaxed::ZERO,
             };
             // In f64 first: most are far from it.
             let beyond = |point: &DVec3| {

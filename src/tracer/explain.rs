@@ -167,10 +167,10 @@ impl<R: Real> Picture<'_, R> {
             (_, Some(floor)) => {
                 let (_, point) = self.surface_point(floor, &ray, row);
                 say(text, "shows", "the surface, which no solid hides");
-                let shadowers = self
+                let casters = self
                     .view
-                    .shadowers(&self.view.ray_to_light(point, floor.surface.support))?;
-                self.explain_shadow(text, "the surface", &shadowers);
+                    .casters(&self.view.ray_to_light(point, floor.surface.support))?;
+                self.explain_shadow(text, "the surface", &casters);
                 let looking = Line {
                     origin: point,
                     leaves: Some(floor.surface.support),
@@ -331,26 +331,26 @@ impl<R: Real> Picture<'_, R> {
             return Ok(());
         }
         let ray = view.ray_to_light(hit.point, hit.support);
-        let shadowers = view.shadowers(&ray)?;
+        let casters = view.casters(&ray)?;
         if let Some(floor) = &self.floor
             && floor.surface.is_ahead(&ray)?
         {
             say(text, "in shadow", "the surface is in the light's way");
         } else {
-            self.explain_shadow(text, "the point", &shadowers);
+            self.explain_shadow(text, "the point", &casters);
         }
         Ok(())
     }
 
-    fn explain_shadow(&self, text: &mut String, of: &str, shadowers: &[usize]) {
-        if shadowers.is_empty() {
+    fn explain_shadow(&self, text: &mut String, of: &str, casters: &[usize]) {
+        if casters.is_empty() {
             say(
                 text,
                 "in light",
                 format!("nothing stands between {of} and the light"),
             );
         }
-        for &solid in shadowers {
+        for &solid in casters {
             say(
                 text,
                 "in shadow",

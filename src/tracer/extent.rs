@@ -19,7 +19,7 @@ pub(super) struct Extent {
 }
 
 /// The extents of a frame: of every solid, of every solid in the mirror, and of the surface; and
-/// what may shade that.
+/// the casters of the surface.
 pub(super) struct Extents<'f> {
     pub(super) direct: ExtentsOfSolids<'f>,
     pub(super) mirrored: ExtentsOfSolids<'f>,
@@ -166,23 +166,30 @@ impl Extent {
         length(self.columns(size)) * length(self.rows(size))
     }
 
-    /// The smallest that holds the shadows that all `points` cast on the screen along the eye's
-    /// rays, each point thickened by `across` to the left and right and by `along` up and down
-    /// the screen, in view space.
-    fn of(points: &[Vector<Bounded>], across: Bounded, along: Bounded, size: u32) -> Extent {
+    /// The smallest extent that holds the projections of all `points` onto the screen, each
+    /// enlarged by `half_width` to the left and right and by `half_height` up and down, in view
+    /// space.
+    fn of(
+        points: &[Vector<Bounded>],
+        half_width: Bounded,
+        half_height: Bounded,
+        size: u32,
+    ) -> Extent {
         let half = f64::from(size) / 2.0;
         let third = Bounded::exact(1.0) / Bounded::exact(3.0);
         // The ray through a point p meets the screen, z = 3N/2, at y = p.y + (3N/2 − p.z) · 3/10.
         let screen = Bounded::exact(3.0 * half);
         let slope = Bounded::exact(3.0) / Bounded::exact(10.0);
-        let columns = points.iter().map(|p| (p.x, across));
-        let rows = points.iter().map(|p| (p.y + (screen - p.z) * slope, along));
-        let range = |places: &mut dyn Iterator<Item = (Bounded, Bounded)>| {
-            let ends = places.map(|(place, reach)| {
+        let columns = points.iter().map(|p| (p.x, half_width));
+        let rows = points
+            .iter()
+            .map(|p| (p.y + (screen - p.z) * slope, half_height));
+        let range = |intervals: &mut dyn Iterator<Item = (Bounded, Bounded)>| {
+            let ends = intervals.map(|(middle, half_length)| {
                 let pixels = |x: Bounded| x * third + Bounded::exact(half);
                 (
-                    pixels(place - reach).at_least(),
-                    pixels(place + reach).at_most(),
+                    pixels(middle - half_length).at_least(),
+                    pixels(middle + half_length).at_most(),
                 )
             });
             let (low, high) = ends

@@ -314,8 +314,8 @@ impl<'f, R: Real> View<'f, R> {
         Ok(all)
     }
 
-    /// Every solid that stands between the ray's origin and the light.
-    pub(super) fn shadowers(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
+    /// All solids that stand between the ray's origin and the light.
+    pub(super) fn casters(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
         let mut all = Vec::new();
         for solid in 0..self.spheres.len() + self.tetrahedra.len() {
             if self.is_ahead(solid, ray)? {
@@ -337,7 +337,7 @@ impl<'f, R: Real> View<'f, R> {
         }
     }
 
-    /// Whether any of these does.
+    /// Whether any of these casters stands between the ray's origin and the light.
     pub(super) fn is_shadowed_by(&self, casters: &[u16], ray: &Line<R>) -> Result<bool, R::Doubt> {
         any(casters
             .iter()

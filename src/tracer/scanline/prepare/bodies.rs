@@ -192,7 +192,7 @@ impl<'p, 's> Bodies<'p, 's> {
         let casters = casters.on(solid.number, Some(face)).iter();
         let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
-        // Most of what shades the facet's plane falls beside the solid.
+        // Most shadows on the facet's plane fall beside the solid.
         let within = |shadow: Region<'f>| shadow.and(&solid.outline, arena);
         let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(within));

@@ -81,9 +81,9 @@ impl<'f> Floor<'f> {
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();
         let casters = casters.into_iter().flat_map(SurfaceCasters::all).copied();
-        let thrown = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
+        let cast = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
         let mut shadows = Growing::new_in(parts.arena);
-        shadows.extend(thrown.map(|shadow| shadow.within(rows)));
+        shadows.extend(cast.map(|shadow| shadow.within(rows)));
         let mirror = floor.mirror.as_ref();
         let mut mirrored = mirror.map(|mirror| {
             let within = Some(&floor.extent);

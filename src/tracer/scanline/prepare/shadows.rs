@@ -1,4 +1,4 @@
-//! What throws shadows on planes and on spheres: other solids, and the surface.
+//! What casts shadows on planes and on spheres: other solids, and the surface.
 
 use std::cell::LazyCell;
 use std::cmp::Ordering;
@@ -146,7 +146,7 @@ pub(crate) fn shadows_on<'f>(
     casters.map(shape)
 }
 
-/// What may shade the pixels of a sphere.
+/// The casters of a sphere.
 pub(crate) fn casters_on<'f>(
     row_sphere: &RowSphere,
     index: usize,

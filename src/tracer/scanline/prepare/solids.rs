@@ -34,7 +34,7 @@ pub(crate) enum Body<'f> {
 pub(crate) struct Facet {
     pub(crate) lit: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
-    /// Whether it is in shadow where nothing else throws one.
+    /// Whether all of it is turned away from the light, and so in shadow.
     pub(crate) turned_away: bool,
     pub(crate) shadows: Receiver,
 }

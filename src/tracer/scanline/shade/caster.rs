@@ -1,4 +1,4 @@
-//! What throws a shadow on a sphere.
+//! What casts a shadow on a sphere.
 
 use crate::number::Bounded;
 use crate::tracer::scanline::rounding::{MORE, U};
@@ -24,7 +24,7 @@ pub(crate) struct ShadowCylinder {
 }
 
 impl Caster<'_> {
-    /// Whether it certainly throws no shadow on a stretch.
+    /// Whether it certainly casts no shadow on a stretch.
     pub(crate) fn misses(&self, stretch: &Stretch) -> bool {
         match self {
             Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative_along(stretch)),

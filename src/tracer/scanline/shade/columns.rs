@@ -38,8 +38,8 @@ pub(crate) struct SphereBand {
     facing: Arcs,
     /// Those outside of which there is certainly no highlight.
     bright: Intervals,
-    /// The casters that may throw a shadow on any of them, by [`bit_of`].
-    shaders: u64,
+    /// The casters that may cast a shadow on any of them, by [`bit_of`].
+    casters: u64,
 }
 
 /// The bit of a caster by its number, which it may have in common with others.
@@ -63,8 +63,8 @@ pub(crate) struct SphereColumns {
     pub(crate) known: Columns,
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
-    /// The casters that may throw a shadow on them, by [`bit_of`].
-    pub(crate) shaders: u64,
+    /// The casters that may cast a shadow on them, by [`bit_of`].
+    pub(crate) casters: u64,
     /// The columns in which it faces the light, or those in which it does not; `None` where each
     /// is to be asked.
     pub(crate) facing: Option<(Columns, bool)>,
@@ -103,7 +103,7 @@ impl SphereCache {
             self.first[number] = Some(first);
             let cache = &mut self.cache[number];
             dispatch!(level, simd => cache.find(simd, sphere, first, grid));
-            cache.shaders = cache.shaders_of(shaded, first, grid);
+            cache.casters = cache.casters_near(shaded, first, grid);
         }
         self.cache[number].row(within as usize)
     }
@@ -119,7 +119,7 @@ impl SphereBand {
             settled: 0,
         },
         bright: [[0; ROWS]; 2],
-        shaders: 0,
+        casters: 0,
     };
 
     /// In one of the rows.
@@ -134,13 +134,13 @@ impl SphereBand {
             known: of(&self.known),
             zones: [of(&self.zones[0]), of(&self.zones[1])],
             bright: of(&self.bright),
-            shaders: self.shaders,
+            casters: self.casters,
             facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
         }
     }
 
-    /// The casters that may throw a shadow on any of the pixels known.
-    fn shaders_of(&self, shaded: &ShadedSphere<'_>, first: u32, grid: Grid) -> u64 {
+    /// The casters that may cast a shadow on any of the pixels known.
+    fn casters_near(&self, shaded: &ShadedSphere<'_>, first: u32, grid: Grid) -> u64 {
         if shaded.casters.is_empty() {
             return 0;
         }

@@ -91,7 +91,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
                 ];
                 let depth = splat::<S, P>(self.simd, cylinder.reach) - (x * x + y * y + z * z);
                 let (inside, outside) = P::is_inside(depth, cylinder.error);
-                // A sphere that is neither before nor behind throws no shadow.
+                // A sphere that is neither before nor behind casts no shadow.
                 let before = &cylinder.before;
                 let (not_before, is_before) = P::is_inside(-self.value(before, hits), before.error);
                 (inside & is_before, outside | not_before)

@@ -16,7 +16,7 @@ use crate::tracer::scanline::write::paint::{Paint, fill};
 /// What the shading of a run needs, kept for the next.
 #[derive(Default)]
 pub(crate) struct Shading {
-    /// Which casters can throw a shadow on any pixel of the run.
+    /// Which casters can cast a shadow on any pixel of the run.
     pub(crate) in_reach: Vec<usize>,
     /// The columns left in doubt.
     pub(crate) doubts: Vec<u32>,

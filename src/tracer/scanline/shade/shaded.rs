@@ -10,7 +10,7 @@ pub(crate) struct ShadedSphere<'f> {
     /// Its number among those of the frame.
     pub(crate) number: usize,
     pub(crate) sphere: RowSphere,
-    /// What may throw a shadow on it.
+    /// What may cast a shadow on it.
     pub(crate) casters: &'f [Caster<'f>],
     /// Its decision in the light.
     pub(crate) lit: Decision,

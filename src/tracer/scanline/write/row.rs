@@ -153,13 +153,13 @@ impl<'r> Row<'r> {
         }
         self.mark_written();
         shading.in_reach.clear();
-        if sphere_columns.shaders != 0 {
+        if sphere_columns.casters != 0 {
             let place = |column| self.grid.place(column);
             let ends = (place(columns.0), place(columns.1 - 1));
             let stretch = shaded.sphere.stretch(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
-                sphere_columns.shaders & bit_of(*number) != 0 && !caster.misses(&stretch)
+                sphere_columns.casters & bit_of(*number) != 0 && !caster.misses(&stretch)
             });
             shading.in_reach.extend(near.map(|(number, _)| number));
         }
