@@ -164,7 +164,7 @@ impl Case<'_> {
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
         let row_sphere = &self.row_sphere;
         let y = self.grid.place(row);
-        let m = row_sphere.off.at(y);
+        let m = row_sphere.m.at(y);
         let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
         let mut cache = SphereBand::NONE;
@@ -182,11 +182,11 @@ impl Case<'_> {
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = row_sphere.squared_radius - m * m - q * q;
-                if squared < row_sphere.least[2] {
+                if squared < row_sphere.min_squares[2] {
                     continue;
                 }
-                let least = row_sphere.least.iter();
-                let zone = least.take_while(|least| squared < **least).count();
+                let min_squares = row_sphere.min_squares.iter();
+                let zone = min_squares.take_while(|least| squared < **least).count();
                 let samples = zones[zone];
                 let line = self.picture.eye_ray(first + lane as u32, row);
                 let hit = self.sphere.first_hit(&line).unwrap().unwrap();
@@ -202,7 +202,7 @@ impl Case<'_> {
                 let column = first + lane as u32;
                 found
                     .cache
-                    .note(&columns, column, facing, halfway, row_sphere.highlight);
+                    .note(&columns, column, facing, halfway, row_sphere.threshold);
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);
@@ -249,8 +249,8 @@ fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &m
         let row_sphere = RowSphere::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
         let to_light = &view.shading.to_light;
-        let beside = row_sphere.beside(&lighting);
-        let ([x, y, z], before) = row_sphere.around(view.spheres[other].center, to_light, &beside);
+        let own = row_sphere.own_moment(&lighting);
+        let ([x, y, z], before) = row_sphere.moment(view.spheres[other].center, to_light, &own);
         let case = Case {
             picture: truth.0,
             view: true_view,

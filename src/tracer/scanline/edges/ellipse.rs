@@ -11,21 +11,23 @@ use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::vector::Vector;
 
-/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that go
-/// linearly with Y: an ellipse with a horizontal chord in every row.
+/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that are linear
+/// functions of Y: an ellipse, with a horizontal chord in every row.
 pub(crate) struct Ellipse {
     /// The middle of the chord at Y = 0, and how it moves with Y.
     center: (f64, f64),
-    pub(crate) off: RowOffset,
+    /// m of each row.
+    pub(crate) m: RowOffset,
     pub(crate) squared_radius: f64,
-    /// Beyond this |m| no row is crossed.
+    /// The largest |m| of a row that the ellipse may reach.
     limit: f64,
-    /// A bound on the error of m, and of half the chord, squared.
-    pub(crate) off_error: f64,
+    /// A bound on the error of m.
+    pub(crate) m_error: f64,
+    /// A bound on the error of the square of half a chord.
     pub(crate) chord_error: f64,
-    /// A bound on the error of an end of the chord in columns, apart from that.
+    /// A bound on the error of an end of a chord, in columns, without the part of `chord_error`.
     slack: f64,
-    /// Whether all of these are finite; otherwise nothing is known.
+    /// Whether all of these are finite; otherwise every column is in doubt.
     is_bounded: bool,
 }
 
@@ -42,57 +44,58 @@ impl RowOffset {
         self.slope * (y - self.zero)
     }
 
-    /// The same of as many rows as there are lanes.
+    /// m of as many rows as there are lanes.
     #[inline(always)]
     pub(crate) fn of_rows<S: Simd>(self, y: S::f64s) -> S::f64s {
         (y - self.zero) * self.slope
     }
 }
 
-/// Lines in one direction from the points of a plane: what all spheres that they meet have in
-/// common.
-pub(crate) struct Lines<'s> {
+/// Parallel lines through the points of a plane, one a pixel.
+pub(crate) struct ParallelLines<'s> {
     plane: &'s PixelPlane,
     direction: Direction<Bounded>,
-    /// What a column adds to the moment of a line, and the length of that, squared.
+    /// The change of a line's moment from one column to the next.
     per_column: Vector<Bounded>,
-    speed: Bounded,
-    /// The way of the moment, of length 1, where it is shortest in a row.
-    across: Vector<Bounded>,
-    /// How the middle of the chord, and m, go with Y.
+    /// The squared length of `per_column`.
+    squared_per_column: Bounded,
+    /// The direction of the shortest moment of a row, over the length of `per_column`.
+    shortest: Vector<Bounded>,
+    /// The change of the chord's middle from one row to the next.
     middle_per_row: Bounded,
-    off_per_row: Bounded,
+    /// The change of m from one row to the next.
+    m_per_row: Bounded,
 }
 
-impl<'s> Lines<'s> {
+impl<'s> ParallelLines<'s> {
     pub(crate) fn new(plane: &'s PixelPlane, direction: Direction<Bounded>) -> Self {
         let l = direction.vector;
         let per_column = plane.per_column.cross(l);
         let per_row = plane.per_row.cross(l);
-        let speed = per_column.squared_length();
-        // The chord's middle is where the moment is shortest. There it points across both l and
-        // what a column adds to it.
-        let across = l.cross(per_column);
-        let across = across.divided_by(across.length() * speed.sqrt());
-        Lines {
+        let squared_per_column = per_column.squared_length();
+        // The moment is shortest in the middle of a chord, and there perpendicular to both l and
+        // `per_column`.
+        let shortest = l.cross(per_column);
+        let shortest = shortest.divided_by(shortest.length() * squared_per_column.sqrt());
+        ParallelLines {
             plane,
             direction,
             per_column,
-            speed,
-            across,
-            middle_per_row: -(per_row.dot(per_column) / speed),
-            off_per_row: per_row.dot(across),
+            squared_per_column,
+            shortest,
+            middle_per_row: -(per_row.dot(per_column) / squared_per_column),
+            m_per_row: per_row.dot(shortest),
         }
     }
 
-    /// The pixels from whose points they meet a sphere: |(p − c) × l|² ≤ |l|² R².
+    /// The pixels whose lines meet a sphere: |(p − c) × l|² ≤ |l|² R².
     pub(crate) fn meet(&self, (center, radius): (Vector<Bounded>, Bounded), grid: Grid) -> Ellipse {
         let moment = (self.plane.origin - center).cross(self.direction.vector);
-        let middle = -(moment.dot(self.per_column) / self.speed);
+        let middle = -(moment.dot(self.per_column) / self.squared_per_column);
         Ellipse::new(
             (middle, self.middle_per_row),
-            (moment.dot(self.across), self.off_per_row),
-            self.direction.squared_length * radius.squared() / self.speed,
+            (moment.dot(self.shortest), self.m_per_row),
+            self.direction.squared_length * radius.squared() / self.squared_per_column,
             grid,
         )
     }
@@ -101,12 +104,12 @@ impl<'s> Lines<'s> {
 impl Ellipse {
     fn new(
         center: (Bounded, Bounded),
-        off: (Bounded, Bounded),
+        m: (Bounded, Bounded),
         squared_radius: Bounded,
         grid: Grid,
     ) -> Ellipse {
         let reach = grid.reach;
-        let (zero, slope) = (-(off.0 / off.1), off.1);
+        let (zero, slope) = (-(m.0 / m.1), m.1);
         // A linear function of Y in f64: its coefficients' errors, and two roundings.
         let error = |(a, b): (Bounded, Bounded)| {
             (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
@@ -117,20 +120,20 @@ impl Ellipse {
         // rounding. The product rounds too.
         let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
         let shift = zero.error() + U * away;
-        let off_error =
+        let m_error =
             (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
         // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the
         // error says, and farther away because the slope is known to a quarter. Otherwise
         // nothing is known.
         let known = slope.error() < slope.value().abs() / 4.0;
         let limit = if known {
-            (radius + off_error) * MORE
+            (radius + m_error) * MORE
         } else {
             f64::INFINITY
         };
         // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
         let chord_error = (squared_radius.error()
-            + (2.0 * limit + off_error) * off_error
+            + (2.0 * limit + m_error) * m_error
             + 2.0 * U * (limit * limit + squared_radius.value().abs()))
             * MORE;
         // The chord's half is at most the radius. Its root, the sum with the middle, a third of it
@@ -150,13 +153,13 @@ impl Ellipse {
         Ellipse {
             is_bounded: all.iter().all(|x| x.is_finite()),
             center: (center.0.value(), center.1.value()),
-            off: RowOffset {
+            m: RowOffset {
                 slope: slope.value(),
                 zero: zero.value(),
             },
             squared_radius: squared_radius.value(),
             limit,
-            off_error,
+            m_error,
             chord_error,
             slack,
         }
@@ -188,18 +191,18 @@ impl Ellipse {
                 certain: [zero, none],
             };
         }
-        let m = self.off.of_rows::<S>(y);
+        let m = self.m.of_rows::<S>(y);
         let squared = -(m * m) + self.squared_radius;
-        let (most, least) = (squared + self.chord_error, squared - self.chord_error);
-        let is_met = m.abs().simd_le(self.limit) & most.simd_ge(zero);
-        let is_certain = is_met & least.simd_gt(zero);
+        let (upper, lower) = (squared + self.chord_error, squared - self.chord_error);
+        let is_met = m.abs().simd_le(self.limit) & upper.simd_ge(zero);
+        let is_certain = is_met & lower.simd_gt(zero);
         let middle = y * self.center.1 + self.center.0;
         // No NaN comes here: m is infinite at worst, and then the row is beyond.
-        let half = most.max(zero).sqrt();
+        let half = upper.max(zero).sqrt();
         let from = in_columns::<S>(grid, middle - half) - self.slack;
         let to = in_columns::<S>(grid, middle + half) + self.slack;
         let possible = [from, is_met.select(to, none)];
-        let half = least.max(zero).sqrt();
+        let half = lower.max(zero).sqrt();
         let from = in_columns::<S>(grid, middle - half) + self.slack;
         let to = in_columns::<S>(grid, middle + half) - self.slack;
         let certain = [from, is_certain.select(to, none)];
@@ -230,7 +233,7 @@ impl Ellipse {
 
     /// The rows that it can cross.
     pub(crate) fn rows(&self, grid: Grid) -> (u32, u32) {
-        let ends = [-self.limit, self.limit].map(|m| self.off.zero + m / self.off.slope);
+        let ends = [-self.limit, self.limit].map(|m| self.m.zero + m / self.m.slope);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         // A row more on either side is far more than rounding takes.
         let place = |y: f64| grid.half + y / 3.0;

@@ -12,13 +12,19 @@ use crate::tracer::vector::Vector;
 
 /// The parameter at which eye rays enter a solid.
 pub(crate) enum Depth<'f> {
-    /// g/109 − s/√109, where g goes linearly with Y, and s² = R² − m² − q² as in `shade/sphere.rs`.
+    /// g/109 − s/√109, with s² = R² − m² − q² as in `shade/sphere.rs`.
     Sphere {
-        off: RowOffset,
+        /// m of each row.
+        m: RowOffset,
+        /// R².
         squared_radius: f64,
-        center: f64,
+        /// c_x.
+        center_x: f64,
+        /// g as a linear function of Y: its constant and its slope.
         g: [f64; 2],
+        /// A bound on the error of the depth, without that of s².
         error: f64,
+        /// A bound on the error of s².
         squared_error: f64,
         support: Support,
     },
@@ -77,16 +83,16 @@ impl Depth<'_> {
     pub(crate) fn bounds(&self, facet: Option<usize>, rectangle: Rectangle) -> (f64, f64) {
         match self {
             Depth::Sphere {
-                off,
+                m,
                 squared_radius,
-                center,
+                center_x,
                 g,
                 error,
                 squared_error,
                 ..
             } => {
-                let m = magnitudes(rectangle.y.map(|y| off.at(y)));
-                let q = magnitudes(rectangle.x.map(|x| x - center));
+                let m = magnitudes(rectangle.y.map(|y| m.at(y)));
+                let q = magnitudes(rectangle.x.map(|x| x - center_x));
                 let squared = |end: usize| (squared_radius - m[end] * m[end]) - q[end] * q[end];
                 let least = (squared(1) - squared_error).max(0.0).sqrt();
                 let most = (squared(0) + squared_error).max(0.0).sqrt() * MORE;
@@ -135,9 +141,9 @@ impl Depth<'_> {
         let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
         let reach = radius + q;
         Depth::Sphere {
-            off: outline.off,
+            m: outline.m,
             squared_radius: outline.squared_radius,
-            center: center.x.value(),
+            center_x: center.x.value(),
             g: [constant.value(), 3.0],
             error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
             squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)

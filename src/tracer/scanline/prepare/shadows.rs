@@ -9,7 +9,7 @@ use crate::number::{Bounded, Real};
 use crate::scene::Side;
 use crate::tracer::arena::collect;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::Lines;
+use crate::tracer::scanline::edges::ellipse::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
@@ -113,7 +113,7 @@ pub(crate) fn shadows_on<'f>(
     arena: &'f Bump,
 ) -> impl Iterator<Item = Region<'f>> {
     let to_light = view.shading.to_light;
-    let lines = LazyCell::new(move || Lines::new(plane, to_light));
+    let lines = LazyCell::new(move || ParallelLines::new(plane, to_light));
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
         let is_ahead = is_ahead(caster);
@@ -156,18 +156,18 @@ pub(crate) fn casters_on<'f>(
     arena: &'f Bump,
 ) -> impl Iterator<Item = Caster<'f>> {
     let to_light = view.shading.to_light;
-    let own = view.spheres[index].support;
-    let beside = LazyCell::new(|| row_sphere.beside(lighting));
+    let support = view.spheres[index].support;
+    let own = LazyCell::new(|| row_sphere.own_moment(lighting));
     casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
             // A ray leaves its own sphere, also where that is listed twice.
-            Some(sphere) if sphere.support == own => None,
+            Some(sphere) if sphere.support == support => None,
             Some(sphere) => {
-                let (moment, before) = row_sphere.around(sphere.center, &to_light, &beside);
-                let reach = to_light.squared_length * sphere.radius.squared();
+                let (moment, before) = row_sphere.moment(sphere.center, &to_light, &own);
+                let limit = to_light.squared_length * sphere.radius.squared();
                 Some(Caster::Sphere(
-                    arena.alloc(ShadowCylinder::new(before, moment, reach)),
+                    arena.alloc(ShadowCylinder::new(before, moment, limit)),
                 ))
             }
             None => {

@@ -2,35 +2,37 @@
 
 use crate::number::Bounded;
 use crate::tracer::scanline::rounding::{MORE, U};
-use crate::tracer::scanline::shade::sphere::{LinearForm, Stretch};
+use crate::tracer::scanline::shade::sphere::{HitBox, LinearForm};
 
-/// What may stand between a pixel of a sphere and the light.
+/// A solid or the surface, which may stand between a pixel of a sphere and the light.
 pub(crate) enum Caster<'f> {
-    /// Any point within all of these half-spaces is in its shadow.
+    /// The shadow is an intersection of half-spaces: all forms are 0 or more.
     Polyhedron(&'f [LinearForm]),
-    /// Any point that is before it, and from which the way to the light passes its centre near
-    /// enough.
+    /// The shadow is a cylinder.
     Sphere(&'f ShadowCylinder),
 }
 
-/// The shadow of a sphere: a cylinder that begins at it, along the way from the light.
+/// The shadow of a sphere with centre c: the points p before it, for which (c − p)·l > 0, whose ray
+/// to the light meets it, |(p − c) × l|² ≤ |l|² R².
 pub(crate) struct ShadowCylinder {
+    /// (c − p)·l.
     pub(crate) before: LinearForm,
-    /// The components of a vector, of which the squared length is at most `reach`; a bound on the
-    /// error of the difference.
+    /// The components of the moment (p − c) × l.
     pub(crate) moment: [LinearForm; 3],
-    pub(crate) reach: f64,
+    /// |l|² R².
+    pub(crate) limit: f64,
+    /// A bound on the error of the difference of `limit` and the squared moment.
     pub(crate) error: f64,
 }
 
 impl Caster<'_> {
-    /// Whether it certainly casts no shadow on a stretch.
-    pub(crate) fn misses(&self, stretch: &Stretch) -> bool {
+    /// Whether it certainly casts no shadow on the pixels of a box.
+    pub(crate) fn misses(&self, hits: &HitBox) -> bool {
         match self {
-            Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative_along(stretch)),
+            Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative(hits)),
             Caster::Sphere(cylinder) => {
-                let least_square = |form: &LinearForm| {
-                    let (low, high) = form.along(stretch);
+                let min_square = |form: &LinearForm| {
+                    let (low, high) = form.range(hits);
                     if low <= 0.0 && high >= 0.0 {
                         0.0
                     } else {
@@ -38,19 +40,18 @@ impl Caster<'_> {
                     }
                 };
                 let [x, y, z] = &cylinder.moment;
-                let most = cylinder.reach - (least_square(x) + least_square(y) + least_square(z));
-                most < -cylinder.error || cylinder.before.is_negative_along(stretch)
+                let upper = cylinder.limit - (min_square(x) + min_square(y) + min_square(z));
+                upper < -cylinder.error || cylinder.before.is_negative(hits)
             }
         }
     }
 }
 
 impl ShadowCylinder {
-    /// `reach` is |l|² R² of a sphere.
     pub(crate) fn new(
         before: LinearForm,
         moment: [LinearForm; 3],
-        reach: Bounded,
+        limit: Bounded,
     ) -> ShadowCylinder {
         let magnitudes: f64 = moment
             .iter()
@@ -62,11 +63,11 @@ impl ShadowCylinder {
             .iter()
             .map(|form| (2.0 * form.magnitude + form.error) * form.error)
             .sum();
-        let error = (reach.error() + carried + 8.0 * U * (magnitudes + reach.value())) * MORE;
+        let error = (limit.error() + carried + 8.0 * U * (magnitudes + limit.value())) * MORE;
         ShadowCylinder {
             before,
             moment,
-            reach: reach.value(),
+            limit: limit.value(),
             error,
         }
     }

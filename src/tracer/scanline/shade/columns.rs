@@ -154,9 +154,9 @@ impl SphereBand {
         let end = to[rows].iter().fold(0, |a, &b| a.max(b));
         let columns = (grid.place(begin), grid.place(end - 1));
         let row = |row: usize| grid.place(first + row as u32);
-        let stretch = shaded.sphere.stretch(columns, (row(low), row(high)));
+        let hits = shaded.sphere.hit_box(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
-        let near = casters.filter(|(_, caster)| !caster.misses(&stretch));
+        let near = casters.filter(|(_, caster)| !caster.misses(&hits));
         near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 
@@ -168,7 +168,7 @@ impl SphereBand {
         self.bright = SphereBand::NONE.bright;
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = places::<S>(simd, lane) + grid.place(first);
-            let m = sphere.off.of_rows::<S>(y);
+            let m = sphere.m.of_rows::<S>(y);
             let rows = InRows {
                 simd,
                 sphere,
@@ -176,8 +176,8 @@ impl SphereBand {
                 m,
                 squared: -(m * m) + sphere.squared_radius,
             };
-            let [innermost, inner, least] = sphere.least;
-            let known = rows.chord(least);
+            let [innermost, inner, outermost] = sphere.min_squares;
+            let known = rows.chord(outermost);
             put::<S>(known, &mut self.known, lane);
             put::<S>(rows.chord(innermost), &mut self.zones[0], lane);
             put::<S>(rows.chord(inner), &mut self.zones[1], lane);
@@ -186,15 +186,15 @@ impl SphereBand {
                 put::<S>(inside, &mut self.facing.inside, lane);
                 self.facing.settled |= settled.to_bitmask() << lane;
             }
-            if let Some(halfway) = &sphere.halfway {
-                // |n − h| is no less than the part of it along m.
-                let is_near = (m * sphere.inverse_radius - halfway.direction[1])
+            if let Some(highlight) = &sphere.highlight {
+                // |n − h| is no less than its component along the axis of m.
+                let is_near = (m * sphere.inverse_radius - highlight.halfway[1])
                     .abs()
-                    .simd_le(halfway.reach);
+                    .simd_le(highlight.max_distance);
                 if is_near.any_true() {
-                    let (inside, settled) = rows.arc(&halfway.form, sphere.highlight, known);
+                    let (inside, settled) = rows.arc(&highlight.form, sphere.threshold, known);
                     let mut bright = known;
-                    if halfway.form.is_concave == Some(true) {
+                    if highlight.form.is_concave == Some(true) {
                         bright = select::<S>(settled, inside, known);
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
@@ -235,33 +235,34 @@ fn put<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
 impl<S: Simd> InRows<'_, S> {
     /// q in a column of each row.
     #[inline(always)]
-    fn across(&self, column: S::f64s) -> S::f64s {
-        (column - self.grid.half) * 3.0 - self.sphere.center
+    fn q(&self, column: S::f64s) -> S::f64s {
+        (column - self.grid.half) * 3.0 - self.sphere.center_x
     }
 
-    /// The columns in which s² is at least `least`, but for some at their ends.
+    /// The columns in which s² is at least `min_square`. Columns at the ends may be missing.
     #[inline(always)]
-    fn chord(&self, least: f64) -> Ends<S::f64s> {
+    fn chord(&self, min_square: f64) -> Ends<S::f64s> {
         let (zero, size) = (S::f64s::splat(self.simd, 0.0), f64::from(self.grid.size));
-        let half = (self.squared - least).max(zero).sqrt();
-        let middle = S::f64s::splat(self.simd, self.sphere.center);
+        let half = (self.squared - min_square).max(zero).sqrt();
+        let middle = S::f64s::splat(self.simd, self.sphere.center_x);
         let from = (in_columns::<S>(self.grid, middle - half) + NUDGE).ceil();
         let to = (in_columns::<S>(self.grid, middle + half) - NUDGE).floor() + 1.0;
         let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
-        // The farther from the middle the less, also as f64 computes it: what is so at both ends is
-        // so between them.
-        let (a, b) = (self.across(from), self.across(to - 1.0));
-        let is_deep = (self.squared - a * a).simd_ge(least) & (self.squared - b * b).simd_ge(least);
-        let is_chord = is_deep & from.simd_lt(to);
+        // s² falls from the middle to both ends, also as f64 computes it: so what holds at both ends
+        // holds between them.
+        let (a, b) = (self.q(from), self.q(to - 1.0));
+        let is_inside =
+            (self.squared - a * a).simd_ge(min_square) & (self.squared - b * b).simd_ge(min_square);
+        let is_chord = is_inside & from.simd_lt(to);
         [is_chord.select(from, zero), is_chord.select(to, zero)]
     }
 
     /// How much a form is more than `level` in a column of each row, or less if it is convex.
     #[inline(always)]
     fn above(&self, form: &LinearForm, level: f64, sign: f64, column: S::f64s) -> S::f64s {
-        let q = self.across(column);
+        let q = self.q(column);
         let s = (self.squared - q * q).sqrt();
-        (self.m * form.off + form.constant + q * form.across + s * form.out - level) * sign
+        (self.m * form.m + form.constant + q * form.q + s * form.s - level) * sign
     }
 
     /// Of the columns `known` those in which a form is above `level`, if it is concave, or below,
@@ -280,9 +281,9 @@ impl<S: Simd> InRows<'_, S> {
             None => return (known, none),
         };
         // The form is F = r + a q + o s, with o ≥ 0, and 0 at (r + a q)² = o² s².
-        let (a, o) = (form.across * sign, form.out * sign);
-        let speed = a * a + o * o;
-        let inverse = 1.0 / speed;
+        let (a, o) = (form.q * sign, form.s * sign);
+        let norm = a * a + o * o;
+        let inverse = 1.0 / norm;
         if !inverse.is_finite() {
             return (known, none);
         }
@@ -290,8 +291,8 @@ impl<S: Simd> InRows<'_, S> {
         let one = S::f64s::splat(self.simd, 1.0);
         let [first, end] = known;
         let last = end - one;
-        let r = (self.m * form.off + form.constant - level) * sign;
-        let discriminant = self.squared * speed - r * r;
+        let r = (self.m * form.m + form.constant - level) * sign;
+        let discriminant = self.squared * norm - r * r;
         let has_roots = discriminant.simd_ge(zero);
         let root = discriminant.max(zero).sqrt() * o;
         let middle = -(r * a);
@@ -299,14 +300,14 @@ impl<S: Simd> InRows<'_, S> {
         // Where r + a q > 0, F is 0 with the other sign of s, and positive at the end of the chord.
         let from_end = !has_roots | (low * a + r).simd_gt(zero);
         let to_end = !has_roots | (high * a + r).simd_gt(zero);
-        let (low, high) = (low + self.sphere.center, high + self.sphere.center);
+        let (low, high) = (low + self.sphere.center_x, high + self.sphere.center_x);
         let from = in_columns::<S>(self.grid, low).ceil().max(first);
         let to = (in_columns::<S>(self.grid, high).floor() + one).min(end);
         let from = from_end.select(first, from);
         let to = to_end.select(end, to);
         let is_none = (!has_roots & r.simd_lt(zero)) | from.simd_ge(to);
         // It is most at q/s = a/o.
-        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.sphere.center;
+        let top = (self.squared.max(zero) * inverse).sqrt() * a + self.sphere.center_x;
         let top = in_columns::<S>(self.grid, top).floor();
         let top = top.min(last - one).max(first);
         // The last column before those, the first and the last of them, and the next; or of none,

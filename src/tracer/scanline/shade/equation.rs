@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
 use crate::tracer::scanline::shade::policy::{Answers, Mask, Policy, Samples, Vector};
-use crate::tracer::scanline::shade::sphere::{Halfway, LinearForm, RowSphere};
+use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, SphereHighlight};
 
 // No closures below: see `shade/run.rs`.
 
@@ -30,7 +30,7 @@ pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
 impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     #[inline(always)]
     pub(crate) fn new(simd: S, sphere: &'s RowSphere, y: f64) -> Self {
-        let m = sphere.off.at(y);
+        let m = sphere.m.at(y);
         SphereInRow {
             simd,
             sphere,
@@ -42,16 +42,16 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     /// A linear form at some hits.
     #[inline(always)]
     pub(crate) fn value(&self, form: &LinearForm, hits: &Hits<Vector<S, P>>) -> Vector<S, P> {
-        let across = splat::<S, P>(self.simd, form.across);
-        let out = splat::<S, P>(self.simd, form.out);
+        let q = splat::<S, P>(self.simd, form.q);
+        let s = splat::<S, P>(self.simd, form.s);
         let of_row = splat::<S, P>(self.simd, form.of_row(self.m));
-        P::product_plus(hits.s, out, P::product_plus(hits.q, across, of_row))
+        P::product_plus(hits.s, s, P::product_plus(hits.q, q, of_row))
     }
 
     /// The hits from X = `x` on: s = √(R² − m² − q²).
     #[inline(always)]
     pub(crate) fn hits(&self, x: f64) -> Hits<Vector<S, P>> {
-        let q = P::Lane::across(self.simd, x, self.sphere.center);
+        let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
         let squared = P::product_plus(q, -q, self.squared);
         Hits {
             q,
@@ -89,8 +89,8 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
                     self.value(y, hits),
                     self.value(z, hits),
                 ];
-                let depth = splat::<S, P>(self.simd, cylinder.reach) - (x * x + y * y + z * z);
-                let (inside, outside) = P::is_inside(depth, cylinder.error);
+                let inside = splat::<S, P>(self.simd, cylinder.limit) - (x * x + y * y + z * z);
+                let (inside, outside) = P::is_inside(inside, cylinder.error);
                 // A sphere that is neither before nor behind casts no shadow.
                 let before = &cylinder.before;
                 let (not_before, is_before) = P::is_inside(-self.value(before, hits), before.error);
@@ -137,10 +137,10 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
                 *sample = P::product_plus(light[i], diffuse[i], *sample);
             }
         }
-        if let Some(halfway) = &self.sphere.halfway
+        if let Some(highlight) = &self.sphere.highlight
             && bright != 0
         {
-            let power = self.highlight(halfway, &self.hits(x), (zone, bright));
+            let power = self.highlight(highlight, &self.hits(x), (zone, bright));
             let specular = P::Lane::samples_of(self.simd, &self.sphere.color.specular);
             for (side, power) in power.as_ref().iter().enumerate() {
                 // No coefficient is negative, so what is below stays below.
@@ -158,26 +158,26 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     #[inline(always)]
     fn highlight(
         &self,
-        halfway: &Halfway,
+        highlight: &SphereHighlight,
         hits: &Hits<Vector<S, P>>,
         (zone, bright): (usize, u64),
     ) -> P::Sides<Vector<S, P>> {
         let (simd, of) = (self.simd, P::Lane::of);
         // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
         // is bright.
-        let [across, off, out] = halfway.direction;
+        let [q, m, s] = highlight.halfway;
         let inverse = splat::<S, P>(simd, self.sphere.inverse_radius);
-        let across = P::product_plus(hits.q, inverse, splat::<S, P>(simd, -across));
-        let off = self.m * self.sphere.inverse_radius - off;
-        let out = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -out));
-        let squared = across * across + out * out + of(off * off);
-        let missing = (squared * of(0.5)).min(of(1.0 - self.sphere.highlight));
+        let q = P::product_plus(hits.q, inverse, splat::<S, P>(simd, -q));
+        let m = self.m * self.sphere.inverse_radius - m;
+        let s = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -s));
+        let squared = q * q + s * s + of(m * m);
+        let missing = (squared * of(0.5)).min(of(1.0 - self.sphere.threshold));
         let power = power::<S, P>(simd, missing, self.sphere.exponent);
         let power = P::where_bright(simd, power, bright);
-        let [constant, slope] = halfway.errors[zone];
-        // With `missing` up to 1/2, xⁿ⁻¹ is at most 2xⁿ, and beyond 1/2 at most 2¹⁻ⁿ; the 1.06 is
-        // for max(X, x) instead of x.
-        let steep = power * of(2.0 * 1.06) + of(1.06 * halfway.least);
+        let [constant, slope] = highlight.errors[zone];
+        // xⁿ⁻¹ is at most 2xⁿ for x ≥ 1/2, and at most 2¹⁻ⁿ for smaller x; the factor 1.06 is that
+        // of max(X, x)ⁿ⁻¹ over xⁿ⁻¹.
+        let steep = power * of(2.0 * 1.06) + of(1.06 * highlight.smallest_power);
         P::within(power, (missing * of(slope) + of(constant)) * steep)
     }
 }
@@ -204,7 +204,7 @@ fn power<S: Simd, P: Policy<S>>(simd: S, missing: Vector<S, P>, exponent: u32) -
     }
 }
 
-/// What is one number a pixel, once for each of its three samples.
+/// The number of each pixel three times, once for each of its samples.
 #[inline(always)]
 fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
     let mut samples = [pixels; 3];

@@ -13,9 +13,9 @@ pub(crate) trait Lane: SimdFloatElement {
 
     fn of(value: f64) -> Self;
 
-    /// X − c of neighbouring pixels from X = `x` on: the difference in f64, rounded, which does not
-    /// depend on where a vector begins.
-    fn across<S: Simd>(simd: S, x: f64, center: f64) -> Self::Vector<S>;
+    /// X − c of neighbouring pixels from X = `x` on: computed in f64 and then rounded, so that no
+    /// difference depends on where a vector begins.
+    fn differences<S: Simd>(simd: S, x: f64, center: f64) -> Self::Vector<S>;
 
     /// Three vectors of samples as they lie in memory, from red on.
     fn samples_of<S: Simd>(simd: S, cycle: &Cycle) -> [Self::Vector<S>; 3];
@@ -34,10 +34,10 @@ impl Lane for f32 {
     }
 
     #[inline(always)]
-    fn across<S: Simd>(simd: S, x: f64, center: f64) -> S::f32s {
+    fn differences<S: Simd>(simd: S, x: f64, center: f64) -> S::f32s {
         let next = x + 3.0 * S::f64s::LEN as f64;
-        let low = f64::across(simd, x, center);
-        low.narrow(f64::across(simd, next, center))
+        let low = f64::differences(simd, x, center);
+        low.narrow(f64::differences(simd, next, center))
     }
 
     #[inline(always)]
@@ -65,7 +65,7 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn across<S: Simd>(simd: S, x: f64, center: f64) -> S::f64s {
+    fn differences<S: Simd>(simd: S, x: f64, center: f64) -> S::f64s {
         places::<S>(simd, 0) + x - center
     }
 

@@ -1,12 +1,11 @@
-//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: what the shading of all
-//! its spheres has in common.
+//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: the same for all spheres.
 
 use crate::number::{Bounded, Real};
 use crate::tracer::scanline::rounding::MORE;
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
 
-/// The logarithm of a power that nobody sees: e⁻⁴¹ < 2⁻⁵⁹.
+/// The logarithm of a power that is too small to be seen: e⁻⁴¹ < 2⁻⁵⁹.
 const CUT: f64 = -41.0;
 
 /// The axes of q, m and s: (1, 0, 0), (0, 10, −3)/√109 and (0, 3, 10)/√109.
@@ -24,7 +23,7 @@ impl Axes {
         Axes { three, ten }
     }
 
-    /// A vector in these axes.
+    /// The coordinates of a vector along these axes.
     pub(crate) fn of(self, vector: Vector<Bounded>) -> [Bounded; 3] {
         [
             vector.x,
@@ -34,18 +33,19 @@ impl Axes {
     }
 }
 
-/// What light does to the spheres of a view.
+/// Equation 4-1 for the spheres of a view.
 pub(crate) struct Lighting {
     pub(crate) axes: Axes,
     /// l, of length 1.
     pub(crate) to_light_unit: [Bounded; 3],
-    /// What n is multiplied with in the components of n × l, and in −n·l, with an l of any length.
+    /// The vectors whose products with n are the components of n × l, and −n·l, with an l of any
+    /// length.
     pub(crate) moment: [[Bounded; 3]; 3],
     pub(crate) before: [Bounded; 3],
     /// h, of length 1; `None` where there is no highlight.
     pub(crate) halfway: Option<[Bounded; 3]>,
     pub(crate) highlight: Highlight,
-    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with.
+    /// For red, green and blue: the coefficients of ambient light, n·l and (n·h)ⁿ.
     pub(crate) coefficients: [[Bounded; 3]; 3],
 }
 
@@ -54,15 +54,15 @@ pub(crate) struct Highlight {
     /// n.
     pub(crate) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
-    pub(crate) least: f64,
-    /// 1 − n·h there.
+    pub(crate) threshold: f64,
+    /// 1 − n·h at the threshold.
     pub(crate) limit: f64,
-    /// A bound on |n − h| where it can be seen.
-    pub(crate) reach: f64,
-    /// |n − h| where it is steepest.
+    /// A bound on |n − h| where a highlight can be seen.
+    pub(crate) max_distance: f64,
+    /// |n − h| where a highlight is steepest.
     pub(crate) steepest: f64,
     /// 2¹⁻ⁿ.
-    pub(crate) least_power: f64,
+    pub(crate) smallest_power: f64,
 }
 
 impl Lighting {
@@ -78,7 +78,7 @@ impl Lighting {
         let exponent = shading.exponent();
         let n = f64::from(exponent);
         // (1 − x)ⁿ ≤ e^−nx.
-        let least = libm::exp(CUT / n);
+        let threshold = libm::exp(CUT / n);
         Lighting {
             axes,
             to_light_unit: axes.of(shading.to_light_unit()),
@@ -87,12 +87,12 @@ impl Lighting {
             halfway: shading.halfway().map(|h| axes.of(h)),
             highlight: Highlight {
                 exponent,
-                least,
+                threshold,
                 limit: -libm::expm1(CUT / n),
                 // 1 − n·h = |n − h|²/2.
-                reach: (2.0 * (1.0 - least)).sqrt() * MORE,
+                max_distance: (2.0 * (1.0 - threshold)).sqrt() * MORE,
                 steepest: 1.0 / n.sqrt(),
-                least_power: libm::exp2(1.0 - n),
+                smallest_power: libm::exp2(1.0 - n),
             },
             coefficients: shading.coefficients(),
         }

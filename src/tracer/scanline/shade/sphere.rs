@@ -1,12 +1,12 @@
 //! A sphere in a row: the f64s that its pixels are shaded with, and bounds on their errors.
 //!
-//! In a row, with q = X − c_x and m as in [`Ellipse::outline`], the hit's normal, of the radius's
-//! length, is
+//! A hit's normal, of the radius's length, has the coordinates q, m and s along three axes:
 //!
-//! q (1, 0, 0) + m (0, 10, −3)/√109 + s (0, 3, 10)/√109, s = √(R² − m² − q²),
+//! q (1, 0, 0) + m (0, 10, −3)/√109 + s (0, 3, 10)/√109, s = √(R² − m² − q²).
 //!
-//! which follows from `sphere.rs` with d = −(0, 3, 10). So n·l, n·h and every plane's equation at
-//! the hit are linear forms in q, m and s, and per pixel there are a root, a few products and sums.
+//! This follows from `sphere.rs` with d = −(0, 3, 10). q = X − c_x depends on the column and m on
+//! the row, as in [`Ellipse::outline`]; s is toward the eye. So n·l, n·h and every plane's equation
+//! at the hit are linear forms in q, m and s, and a pixel costs a root, a few products and sums.
 
 use std::cmp::Ordering;
 
@@ -19,40 +19,44 @@ use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
-/// How far inside its outline a sphere is hit. A root multiplies errors by 1/s, and few pixels have
-/// a small s: those with s ≥ R/8, with s ≥ R/128, with s ≥ R/16384, and the rest, which is left in doubt.
+/// The zones of a sphere, from the middle of its outline to the rim: s ≥ R/8, s ≥ R/128, and
+/// s ≥ R/16384. A root multiplies errors by 1/s, so each zone has bounds of its own; what lies
+/// beyond the last zone is left in doubt.
 pub(crate) const ZONES: usize = 3;
 
-/// What R is divided by for the least s of each zone.
-const DEPTHS: [f64; ZONES] = [8.0, 128.0, 16384.0];
+/// R over the smallest s of each zone.
+const ZONE_DIVISORS: [f64; ZONES] = [8.0, 128.0, 16384.0];
 
-/// constant + across · q + off · m + out · s, and a bound on its error in f64 in any zone.
+/// The linear form constant + q · q + m · m + s · s, whose fields are the coefficients of the
+/// coordinates of the same names.
 #[derive(Clone, Copy)]
 pub(crate) struct LinearForm {
     pub(crate) constant: f64,
-    pub(crate) across: f64,
-    pub(crate) off: f64,
-    pub(crate) out: f64,
+    pub(crate) q: f64,
+    pub(crate) m: f64,
+    pub(crate) s: f64,
+    /// A bound on the error of the form in f64, in any zone.
     pub(crate) error: f64,
-    /// A bound on its magnitude.
+    /// A bound on the form's magnitude.
     pub(crate) magnitude: f64,
-    /// Whether `out` is certainly not negative, or certainly not positive.
+    /// Whether `s` is certainly not negative, or certainly not positive: then the form is concave,
+    /// or convex, along a row.
     pub(crate) is_concave: Option<bool>,
 }
 
 impl LinearForm {
-    /// One of which nothing is known; computed without its error it is negative.
+    /// A form whose sign is always in doubt; shaders without bounds take it for negative.
     pub(crate) const UNKNOWN: LinearForm = LinearForm {
         constant: -1.0,
-        across: 0.0,
-        off: 0.0,
-        out: 0.0,
+        q: 0.0,
+        m: 0.0,
+        s: 0.0,
         error: f64::INFINITY,
         magnitude: f64::INFINITY,
         is_concave: None,
     };
 
-    /// A form without a constant, and one.
+    /// The sum of a form without a constant and of `constant`.
     fn plus(self, constant: Bounded) -> LinearForm {
         let magnitude = constant.value().abs();
         LinearForm {
@@ -63,74 +67,74 @@ impl LinearForm {
         }
     }
 
-    /// The part that does not change along a row.
+    /// The part of the form that is the same in all pixels of a row.
     pub(crate) fn of_row(&self, m: f64) -> f64 {
-        self.constant + self.off * m
+        self.constant + self.m * m
     }
 
-    /// The least and the most that f64 computes of it in a pixel of a stretch, by these operations:
-    /// rounding keeps order, so where a term is less it is not more rounded, and so are sums.
-    /// Therefore this needs no bound of its own.
-    pub(crate) fn along(&self, stretch: &Stretch) -> (f64, f64) {
+    /// The interval of the values that f64 computes for the pixels of a box. Rounding is monotonic,
+    /// so the same operations on the ends of the coordinates give the ends of the interval.
+    pub(crate) fn range(&self, hits: &HitBox) -> (f64, f64) {
         let ends = |factor: f64, (low, high): (f64, f64)| {
             let (a, b) = (low * factor, high * factor);
             (a.min(b), a.max(b))
         };
-        let off = ends(self.off, stretch.m);
-        let across = ends(self.across, stretch.q);
-        let out = ends(self.out, stretch.s);
+        let m = ends(self.m, hits.m);
+        let q = ends(self.q, hits.q);
+        let s = ends(self.s, hits.s);
         (
-            self.constant + off.0 + across.0 + out.0,
-            self.constant + off.1 + across.1 + out.1,
+            self.constant + m.0 + q.0 + s.0,
+            self.constant + m.1 + q.1 + s.1,
         )
     }
 
-    /// Whether it is certainly less than 0 in every pixel of a stretch.
-    pub(crate) fn is_negative_along(&self, stretch: &Stretch) -> bool {
-        self.along(stretch).1 < -self.error
+    /// Whether the form is certainly less than 0 in every pixel of a box.
+    pub(crate) fn is_negative(&self, hits: &HitBox) -> bool {
+        self.range(hits).1 < -self.error
     }
 }
 
-/// Neighbouring pixels of a sphere: between which m, q and s they are, as f64 computes them.
-pub(crate) struct Stretch {
+/// The intervals of m, q and s of some pixels of a sphere, as f64 computes them.
+pub(crate) struct HitBox {
     m: (f64, f64),
     q: (f64, f64),
     s: (f64, f64),
 }
 
-/// The way halfway between the light and the eye.
-pub(crate) struct Halfway {
+/// The highlight of a sphere.
+pub(crate) struct SphereHighlight {
     /// n·h.
     pub(crate) form: LinearForm,
     /// h, of length 1, in the axes of q, m and s.
-    pub(crate) direction: [f64; 3],
-    /// In each zone, a bound on n times the error of 1 − n·h: a constant, and what 1 − n·h is
-    /// multiplied with.
+    pub(crate) halfway: [f64; 3],
+    /// In each zone, a bound on n times the error of 1 − n·h: a constant and a factor of 1 − n·h.
     pub(crate) errors: [[f64; 2]; ZONES],
     /// 2¹⁻ⁿ.
-    pub(crate) least: f64,
-    /// Where m/R is farther than this from that of h there is no highlight.
-    pub(crate) reach: f64,
+    pub(crate) smallest_power: f64,
+    /// The largest difference of m/R and that of h at which there is a highlight.
+    pub(crate) max_distance: f64,
 }
 
-/// What is known about q, m and s of any pixel: a bound on their magnitudes, and on their errors.
+/// Bounds on q, m and s of any pixel.
 #[derive(Clone, Copy)]
-struct Known {
+struct HitBounds {
+    /// A bound on the magnitude of each.
     radius: f64,
-    across: f64,
-    off: f64,
-    out: [f64; ZONES],
+    /// Bounds on their errors; that of s in each zone.
+    q_error: f64,
+    m_error: f64,
+    s_errors: [f64; ZONES],
 }
 
-impl Known {
-    /// vector · n, as a form, of a vector in the axes of q, m and s.
+impl HitBounds {
+    /// The form vector · n, of a vector in the axes of q, m and s.
     fn form(&self, factors: [Bounded; 3]) -> LinearForm {
         LinearForm {
             constant: 0.0,
-            across: factors[0].value(),
-            off: factors[1].value(),
-            out: factors[2].value(),
-            error: self.error(&factors, self.out[ZONES - 1]),
+            q: factors[0].value(),
+            m: factors[1].value(),
+            s: factors[2].value(),
+            error: self.error(&factors, self.s_errors[ZONES - 1]),
             magnitude: self.magnitude(&factors) * MORE,
             is_concave: factors[2].sign().ok().map(Ordering::is_ge),
         }
@@ -140,11 +144,11 @@ impl Known {
         factors.iter().map(|f| f.value().abs() * self.radius).sum()
     }
 
-    /// A bound on the error of a form without a constant where that of s is at most `out`.
-    fn error(&self, factors: &[Bounded; 3], out: f64) -> f64 {
+    /// A bound on the error of a form without a constant where the error of s is at most `s_error`.
+    fn error(&self, factors: &[Bounded; 3], s_error: f64) -> f64 {
         // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the
         // sum of all magnitudes.
-        let terms = factors.iter().zip([self.across, self.off, out]);
+        let terms = factors.iter().zip([self.q_error, self.m_error, s_error]);
         let carried: f64 = terms
             .map(|(factor, error)| {
                 factor.error() * (self.radius + error) + factor.value().abs() * error
@@ -154,86 +158,94 @@ impl Known {
         (carried + rounded) * MORE
     }
 
-    /// `h` is that of a view, `radius` the sphere's.
-    fn halfway(&self, h: [Bounded; 3], highlight: &Highlight, radius: Bounded) -> Halfway {
-        // Y = |D|²/2 with D = (q, m, s)/R − h. With |ε| the length of the error of D but for the
-        // rounding of its differences, which is less than u of D, that of Y is at most |D| |ε| +
-        // |ε|² + 16u Y. Any bound on |D| that is linear in Y will do: (δ + 2Y/δ)/2 is one for each
-        // δ, and touches it where δ² = 2Y; a highlight is steepest at 1/√n.
+    /// The highlight of a sphere of this radius, where `h` is that of the view.
+    fn highlight(
+        &self,
+        h: [Bounded; 3],
+        highlight: &Highlight,
+        radius: Bounded,
+    ) -> SphereHighlight {
+        // Y = |D|²/2 with D = (q, m, s)/R − h. Let ε be the error of D without the rounding of its
+        // differences, which is less than u of D. Then the error of Y is at most |D| |ε| + |ε|² +
+        // 16u Y. |D| is bounded by (δ + 2Y/δ)/2, which is linear in Y, for any δ, and equal to it
+        // where δ² = 2Y: δ is chosen where the highlight is steepest, 1/√n.
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
-        // No part of n is more than 1, and it is multiplied with 1/R, which rounds, as the product
-        // does.
+        // No component of n is more than 1. 1/R and the product with it round.
         let scaled = radius.error() / radius.value() + 3.0 * U;
         let part = |error: f64, h: Bounded| error / radius.value() + h.error() + scaled;
-        let errors = self.out.map(|out| {
-            let [across, off, out] = [
-                part(self.across, h[0]),
-                part(self.off, h[1]),
-                part(out, h[2]),
+        let errors = self.s_errors.map(|s_error| {
+            let [q, m, s] = [
+                part(self.q_error, h[0]),
+                part(self.m_error, h[1]),
+                part(s_error, h[2]),
             ];
-            let off = (across + off + out) * MORE;
+            let error = (q + m + s) * MORE;
             // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
             // products, by u of what they give.
-            let constant = n * (off * steepest / 2.0 + off * off + 2.0 * U) * MORE;
-            let slope = n * (off / steepest + 16.0 * U) * MORE;
-            let tame = constant + slope * highlight.limit < 1.0 / 64.0;
-            if tame {
+            let constant = n * (error * steepest / 2.0 + error * error + 2.0 * U) * MORE;
+            let slope = n * (error / steepest + 16.0 * U) * MORE;
+            let is_small = constant + slope * highlight.limit < 1.0 / 64.0;
+            if is_small {
                 [constant, slope]
             } else {
                 [f64::INFINITY, 0.0]
             }
         });
-        Halfway {
+        SphereHighlight {
             form: self.form(h.map(|component| component / radius)),
-            direction: h.map(Bounded::value),
+            halfway: h.map(Bounded::value),
             errors,
-            least: highlight.least_power,
-            reach: (highlight.reach + part(self.off, h[1])) * MORE,
+            smallest_power: highlight.smallest_power,
+            max_distance: (highlight.max_distance + part(self.m_error, h[1])) * MORE,
         }
     }
 }
 
 /// A sphere whose pixels are to be shaded.
 pub(crate) struct RowSphere {
-    pub(crate) center: f64,
+    /// c_x.
+    pub(crate) center_x: f64,
+    /// R².
     pub(crate) squared_radius: f64,
-    pub(crate) off: RowOffset,
-    /// The least s² of each zone.
-    pub(crate) least: [f64; ZONES],
-    known: Known,
-    at: Vector<Bounded>,
+    /// m of each row.
+    pub(crate) m: RowOffset,
+    /// The smallest s² of each zone.
+    pub(crate) min_squares: [f64; ZONES],
+    bounds: HitBounds,
+    center: Vector<Bounded>,
     /// n·l, with n and l of length 1.
     pub(crate) light: LinearForm,
     /// 1/R.
     pub(crate) inverse_radius: f64,
     /// `None` where there is no highlight.
-    pub(crate) halfway: Option<Halfway>,
+    pub(crate) highlight: Option<SphereHighlight>,
+    /// n, the exponent of the highlight.
     pub(crate) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
-    pub(crate) highlight: f64,
+    pub(crate) threshold: f64,
     pub(crate) color: Coefficients,
-    /// In each zone, a bound on the error of any channel, but for what the power's adds.
+    /// In each zone, a bound on the error of any channel without that of the highlight.
     pub(crate) errors: [f64; ZONES],
-    /// Whether points turned away from the light are in shadow, and not just without its diffuse
-    /// part.
+    /// Whether there are shadows in this stage; without, a point turned away from the light has its
+    /// ambient and specular light.
     pub(crate) shadows: bool,
 }
 
-/// What is multiplied in ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
-/// colour.
+/// The coefficients of ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
+/// sphere's colour.
 pub(crate) struct Coefficients {
     pub(crate) ambient: Cycle,
     pub(crate) diffuse: Cycle,
     pub(crate) specular: Cycle,
 }
 
-/// Red, green, blue, red and so on, as samples lie in memory: a vector of up to 8 lanes, from any
-/// of the three on.
+/// Red, green, blue, red and so on, as samples lie in memory: long enough for a vector of 8 lanes
+/// that begins with any channel.
 pub(crate) type Cycle = [f64; 8 + 2];
 
 impl RowSphere {
-    /// `color` is the sphere's, times the reflectance in the mirror.
+    /// `color` is the sphere's colour, in the mirror times the reflectance.
     pub(crate) fn new(
         sphere: &Sphere<Bounded>,
         outline: &Ellipse,
@@ -243,32 +255,35 @@ impl RowSphere {
     ) -> RowSphere {
         let radius = sphere.radius.at_most() * MORE;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
-        let across = (sphere.center.x.error() * (1.0 + U) + U * radius) * MORE;
+        let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * MORE;
         // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference
         // round.
         let squared =
-            outline.chord_error + (2.0 * radius + across) * across + 2.0 * U * radius * radius;
+            outline.chord_error + (2.0 * radius + q_error) * q_error + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
-        let out = DEPTHS.map(|depth| (squared * depth / radius + U * radius) * MORE);
-        let known = Known {
+        let s_errors =
+            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * MORE);
+        let bounds = HitBounds {
             radius,
-            across,
-            off: outline.off_error,
-            out,
+            q_error,
+            m_error: outline.m_error,
+            s_errors,
         };
         let to_light = lighting.to_light_unit.map(|part| part / sphere.radius);
-        let light = known.form(to_light);
+        let light = bounds.form(to_light);
         let highlight = &lighting.highlight;
-        let halfway = lighting
+        let sphere_highlight = lighting
             .halfway
-            .map(|h| known.halfway(h, highlight, sphere.radius));
-        // Where the power is below 2⁻⁵⁹ it is left out, or put at that. The form tells where that
-        // is, if its error is no more than that of a factor of 1.05 in the power.
+            .map(|h| bounds.highlight(h, highlight, sphere.radius));
+        // A power below 2⁻⁵⁹ is left out, or replaced by 2⁻⁵⁹. The form tells such powers, if its
+        // error changes the power by no more than a factor of 1.05.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
-        let form_error = halfway.as_ref().map_or(0.0, |h| h.form.error);
-        let tame = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
-        let left_out = if tame { tiny } else { f64::INFINITY };
-        let light_errors = known.out.map(|out| known.error(&to_light, out));
+        let form_error = sphere_highlight.as_ref().map_or(0.0, |h| h.form.error);
+        let is_small = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
+        let left_out = if is_small { tiny } else { f64::INFINITY };
+        let light_errors = bounds
+            .s_errors
+            .map(|s_error| bounds.error(&to_light, s_error));
         let mut errors = [0.0_f64; ZONES];
         let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let parts = coefficients.map(|coefficient| coefficient * color);
@@ -287,7 +302,7 @@ impl RowSphere {
             for (all, light) in errors.iter_mut().zip(light_errors) {
                 *all = error(light).max(*all);
             }
-            // +0 for −0: a sum that begins with +0 is not −0.
+            // −0 becomes +0, so that no sample is −0.
             parts.map(|part| part.value() + 0.0)
         };
         let [red, green, blue] = lighting.coefficients;
@@ -298,17 +313,18 @@ impl RowSphere {
         ];
         let cycle = |part: usize| std::array::from_fn(|sample| channels[sample % 3][part]);
         RowSphere {
-            center: sphere.center.x.value(),
+            center_x: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
-            off: outline.off,
-            least: DEPTHS.map(|depth| (radius / depth) * (radius / depth) * MORE),
-            known,
-            at: sphere.center,
+            m: outline.m,
+            min_squares: ZONE_DIVISORS
+                .map(|divisor| (radius / divisor) * (radius / divisor) * MORE),
+            bounds,
+            center: sphere.center,
             light,
             inverse_radius: 1.0 / sphere.radius.value(),
-            halfway,
+            highlight: sphere_highlight,
             exponent: highlight.exponent,
-            highlight: highlight.least,
+            threshold: highlight.threshold,
             color: Coefficients {
                 ambient: cycle(0),
                 diffuse: cycle(1),
@@ -319,53 +335,54 @@ impl RowSphere {
         }
     }
 
-    /// The pixels from the column at X to another, in the rows from that at Y to another.
-    pub(crate) fn stretch(&self, x: (f64, f64), y: (f64, f64)) -> Stretch {
+    /// The box of the pixels in these intervals of X and Y.
+    pub(crate) fn hit_box(&self, x: (f64, f64), y: (f64, f64)) -> HitBox {
         let ends = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
-        let m = ends((self.off.at(y.0), self.off.at(y.1)));
-        let q = (x.0 - self.center, x.1 - self.center);
+        let m = ends((self.m.at(y.0), self.m.at(y.1)));
+        let q = (x.0 - self.center_x, x.1 - self.center_x);
         let squares = |(low, high): (f64, f64)| {
             let (a, b) = ends((low * low, high * high));
             (if low < 0.0 && high > 0.0 { 0.0 } else { a }, b)
         };
-        let (off, across) = (squares(m), squares(q));
-        let s = |off: f64, across: f64| ((self.squared_radius - off) - across).max(0.0).sqrt();
-        Stretch {
+        let (m_squares, q_squares) = (squares(m), squares(q));
+        let s = |m: f64, q: f64| ((self.squared_radius - m) - q).max(0.0).sqrt();
+        HitBox {
             m,
             q,
-            s: (s(off.1, across.1), s(off.0, across.0)),
+            s: (s(m_squares.1, q_squares.1), s(m_squares.0, q_squares.0)),
         }
     }
 
-    /// How far the hit is inside a half-space, in units of its normal's length.
+    /// The distance of the hit from the border of a half-space, positive inside, in units of the
+    /// length of the half-space's normal.
     pub(crate) fn inside(
         &self,
         half_space: &HalfSpace<Bounded>,
         lighting: &Lighting,
     ) -> LinearForm {
         let n = half_space.normal;
-        let form = self.known.form(lighting.axes.of(n));
-        form.plus(n.dot(self.at - half_space.at))
+        let form = self.bounds.form(lighting.axes.of(n));
+        form.plus(n.dot(self.center - half_space.at))
     }
 
-    /// n × l, component by component, and −n·l, with n of the radius's length: what
-    /// [`RowSphere::around`] has in common for all spheres.
-    pub(crate) fn beside(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
-        let moment = lighting.moment.map(|factors| self.known.form(factors));
-        (moment, self.known.form(lighting.before))
+    /// The components of n × l, and −n·l, with n of the radius's length: the parts of
+    /// [`RowSphere::moment`] that are the same for all casters.
+    pub(crate) fn own_moment(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
+        let moment = lighting.moment.map(|factors| self.bounds.form(factors));
+        (moment, self.bounds.form(lighting.before))
     }
 
-    /// The components of (hit − c) × l, and (c − hit)·l, for another sphere's centre c.
-    pub(crate) fn around(
+    /// The components of the moment (hit − c) × l, and (c − hit)·l, for a caster's centre c.
+    pub(crate) fn moment(
         &self,
         center: Vector<Bounded>,
         to_light: &Direction<Bounded>,
         ([x, y, z], before): &([LinearForm; 3], LinearForm),
     ) -> ([LinearForm; 3], LinearForm) {
         let l = to_light.vector;
-        let from = self.at - center;
-        let at = from.cross(l);
-        let moment = [x.plus(at.x), y.plus(at.y), z.plus(at.z)];
+        let from = self.center - center;
+        let constant = from.cross(l);
+        let moment = [x.plus(constant.x), y.plus(constant.y), z.plus(constant.z)];
         (moment, before.plus(-from.dot(l)))
     }
 }

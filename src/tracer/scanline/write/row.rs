@@ -156,10 +156,10 @@ impl<'r> Row<'r> {
         if sphere_columns.casters != 0 {
             let place = |column| self.grid.place(column);
             let ends = (place(columns.0), place(columns.1 - 1));
-            let stretch = shaded.sphere.stretch(ends, (self.y, self.y));
+            let hits = shaded.sphere.hit_box(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
-                sphere_columns.casters & bit_of(*number) != 0 && !caster.misses(&stretch)
+                sphere_columns.casters & bit_of(*number) != 0 && !caster.misses(&hits)
             });
             shading.in_reach.extend(near.map(|(number, _)| number));
         }
