@@ -3,7 +3,7 @@
 use super::arena::Arena;
 use super::decision::{Decision, Seen};
 use super::ladder::{Ladder, Lines, Rung};
-use super::pixel::Floor;
+use super::pixel::SeenSurface;
 use crate::number::Bounded;
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -63,13 +63,13 @@ impl Colors<'_> {
     pub(crate) fn near(&self, pixel: (u32, u32)) -> impl Iterator<Item = Decision> + '_ {
         let picture = self.ladder.bounded();
         let solids = picture.view.extents.at(pixel);
-        let floor = self
+        let surface = self
             .surface()
-            .filter(|floor| floor.extent.holds(pixel.0, pixel.1));
-        let mirrored = floor.and_then(|floor| floor.mirror.as_ref());
+            .filter(|surface| surface.extent.holds(pixel.0, pixel.1));
+        let mirrored = surface.and_then(|surface| surface.mirror.as_ref());
         let mirrored = mirrored.map(|mirror| mirror.view.extents.at(pixel));
         self.of_solids(solids, Decision::Solid)
-            .chain(floor.map(|_| SURFACE).into_iter().flatten())
+            .chain(surface.map(|_| SURFACE).into_iter().flatten())
             .chain(self.of_solids(mirrored.into_iter().flatten(), Decision::Mirrored))
             .chain(self.apart_from_solids())
     }
@@ -85,12 +85,13 @@ impl Colors<'_> {
         quadrants.map(Decision::Quadrant).chain(background)
     }
 
-    fn surface(&self) -> Option<&Floor<'_, Bounded>> {
-        self.ladder.bounded().floor.as_ref()
+    fn surface(&self) -> Option<&SeenSurface<'_, Bounded>> {
+        self.ladder.bounded().surface.as_ref()
     }
 
     fn mirrors(&self) -> bool {
-        self.surface().is_some_and(|floor| floor.mirror.is_some())
+        self.surface()
+            .is_some_and(|surface| surface.mirror.is_some())
     }
 
     fn of_solids<'a>(

@@ -130,9 +130,9 @@ impl<R: Real> Picture<'_, R> {
                 ),
             );
         }
-        if let Some(floor) = &self.floor {
-            let (depth, point) = self.surface_point(floor, &ray, row);
-            let inside = if floor.surface.contains(point)? {
+        if let Some(surface) = &self.surface {
+            let (depth, point) = self.surface_point(surface, &ray, row);
+            let inside = if surface.square.contains(point)? {
                 "in the square"
             } else {
                 "beside the square"
@@ -158,25 +158,25 @@ impl<R: Real> Picture<'_, R> {
         decision: Decision,
     ) -> Result<(), R::Doubt> {
         let ray = self.eye_ray(column, row);
-        match (decision, &self.floor) {
+        match (decision, &self.surface) {
             (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
             (Decision::Solid(seen), _) => {
                 say(text, "shows", self.name(usize::from(seen.solid), seen.face));
                 self.explain_solid(text, &self.view, ((column, row), &ray), false, seen)?;
             }
-            (_, Some(floor)) => {
-                let (_, point) = self.surface_point(floor, &ray, row);
+            (_, Some(surface)) => {
+                let (_, point) = self.surface_point(surface, &ray, row);
                 say(text, "shows", "the surface, which no solid hides");
                 let casters = self
                     .view
-                    .casters(&self.view.ray_to_light(point, floor.surface.support))?;
+                    .casters(&self.view.ray_to_light(point, surface.square.support))?;
                 self.explain_shadow(text, "the surface", &casters);
                 let looking = Line {
                     origin: point,
-                    leaves: Some(floor.surface.support),
+                    leaves: Some(surface.square.support),
                     ..ray
                 };
-                if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &floor.mirror) {
+                if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {
                     let [x, y, z] = self.unit(ray.direction.vector);
                     say(
                         text,
@@ -205,7 +205,7 @@ impl<R: Real> Picture<'_, R> {
                     );
                     self.explain_solid(text, &mirror.view, ((column, row), &looking), true, seen)?;
                     say(text, "reflectance", Short(mirror.reflectance.to_f64()));
-                } else if decision == Decision::Surface && floor.mirror.is_some() {
+                } else if decision == Decision::Surface && surface.mirror.is_some() {
                     say(
                         text,
                         "mirrors",
@@ -236,9 +236,9 @@ impl<R: Real> Picture<'_, R> {
         let Some((_, hit)) = only else { return Ok(()) };
         let upright = |[x, y, z]: [f64; 3]| if mirrored { [x, -y, z] } else { [x, y, z] };
         let height = self
-            .floor
+            .surface
             .as_ref()
-            .map_or(0.0, |floor| self.in_scene(floor.surface.height));
+            .map_or(0.0, |surface| self.in_scene(surface.square.height));
         let [x, y, z] = self.point(hit.point);
         let point = if mirrored {
             [x, 2.0 * height - y, z]
@@ -332,8 +332,8 @@ impl<R: Real> Picture<'_, R> {
         }
         let ray = view.ray_to_light(hit.point, hit.support);
         let casters = view.casters(&ray)?;
-        if let Some(floor) = &self.floor
-            && floor.surface.is_ahead(&ray)?
+        if let Some(surface) = &self.surface
+            && surface.square.is_ahead(&ray)?
         {
             say(text, "in shadow", "the surface is in the light's way");
         } else {

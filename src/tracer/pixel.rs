@@ -25,12 +25,13 @@ pub(super) struct Picture<'f, R> {
     pub(super) size: u32,
     pub(super) frame: Frame<R>,
     pub(super) view: View<'f, R>,
-    pub(super) floor: Option<Floor<'f, R>>,
+    /// From stage 5 on, if the scene has a surface.
+    pub(super) surface: Option<SeenSurface<'f, R>>,
 }
 
-/// The surface, from stage 5 on.
-pub(super) struct Floor<'f, R> {
-    pub(super) surface: Surface<R>,
+/// The surface as pixels show it.
+pub(super) struct SeenSurface<'f, R> {
+    pub(super) square: Surface<R>,
     /// Where it can be seen.
     pub(super) extent: Extent,
     casters: CastersOnSurface<'f>,
@@ -69,10 +70,10 @@ impl<'f, R: Real> Picture<'f, R> {
         room: &impl Room<'f>,
     ) -> Self {
         let seen = extents.surface.as_ref().zip(extents.casters_on_surface);
-        let floor = match (scene.surface(), frame.surface(scene), seen) {
-            (Some(described), Some(surface), Some((extent, casters))) if stage >= Stage::Shadow => {
-                Some(Floor {
-                    surface,
+        let surface = match (scene.surface(), frame.surface(scene), seen) {
+            (Some(described), Some(square), Some((extent, casters))) if stage >= Stage::Shadow => {
+                Some(SeenSurface {
+                    square,
                     extent: extent.clone(),
                     casters,
                     color: Vector::exact(described.color),
@@ -91,7 +92,7 @@ impl<'f, R: Real> Picture<'f, R> {
             size,
             frame: *frame,
             view: View::new(scene, frame, &bearings.direct, extents.direct, false, room),
-            floor,
+            surface,
         }
     }
 
@@ -116,7 +117,8 @@ impl<'f, R: Real> Picture<'f, R> {
         column: u32,
         row: u32,
     ) -> Result<Option<[f32; 3]>, R::Doubt> {
-        let mirror = self.floor.as_ref().and_then(|floor| floor.mirror.as_ref());
+        let surface = self.surface.as_ref();
+        let mirror = surface.and_then(|surface| surface.mirror.as_ref());
         let (view, seen) = match (decision, mirror) {
             (Decision::Solid(seen), _) => (&self.view, seen),
             // The eye's ray goes on straight into the reflected scene.
@@ -139,14 +141,14 @@ impl<'f, R: Real> Picture<'f, R> {
         decision: Decision,
         normal: Option<&Normal<R>>,
     ) -> Result<[f32; 3], R::Doubt> {
-        let color = match (decision, &self.floor) {
+        let color = match (decision, &self.surface) {
             (Decision::Quadrant(number), _) => Vector::exact(QUADRANTS[usize::from(number)]),
             (Decision::Solid(seen), _) => self.color_of_solid(&self.view, seen, normal)?,
-            (Decision::Surface, Some(floor)) => floor.color,
+            (Decision::Surface, Some(surface)) => surface.color,
             (Decision::SurfaceInShadow, _) => self.view.shading.ambient(),
             (
                 Decision::Mirrored(seen),
-                Some(Floor {
+                Some(SeenSurface {
                     mirror: Some(mirror),
                     ..
                 }),
@@ -215,21 +217,21 @@ impl<'f, R: Real> Picture<'f, R> {
         let hit = self
             .view
             .first_hit((column, row), &ray, None, Solids::All)?;
-        if let Some(floor) = self
-            .floor
+        if let Some(surface) = self
+            .surface
             .as_ref()
-            .filter(|floor| floor.extent.holds(column, row))
+            .filter(|surface| surface.extent.holds(column, row))
         {
-            let (depth, point) = self.surface_point(floor, &ray, row);
+            let (depth, point) = self.surface_point(surface, &ray, row);
             let hides = || match &hit {
                 // Of a solid and the surface at the same depth, the solid is seen.
-                Some((_, hit)) if hit.support == floor.surface.support => Ok(false),
+                Some((_, hit)) if hit.support == surface.square.support => Ok(false),
                 Some((_, hit)) => (hit.depth - depth).sign().map(Ordering::is_gt),
                 None => Ok(true),
             };
-            let contains = || floor.surface.contains(point);
+            let contains = || surface.square.contains(point);
             if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
-                return self.surface_at(floor, (column, row), depth, point);
+                return self.surface_at(surface, (column, row), depth, point);
             }
         }
         Ok(match hit {
@@ -246,15 +248,16 @@ impl<'f, R: Real> Picture<'f, R> {
     /// known without any rounding.
     pub(super) fn surface_point(
         &self,
-        floor: &Floor<'_, R>,
+        surface: &SeenSurface<'_, R>,
         ray: &Line<R>,
         row: u32,
     ) -> (R, Vector<R>) {
-        let depth = R::exact(f64::from(row) - f64::from(self.size) / 2.0) - floor.height_in_pixels;
+        let depth =
+            R::exact(f64::from(row) - f64::from(self.size) / 2.0) - surface.height_in_pixels;
         (
             depth,
             Vector {
-                y: floor.surface.height,
+                y: surface.square.height,
                 ..ray.at(depth)
             },
         )
@@ -263,20 +266,20 @@ impl<'f, R: Real> Picture<'f, R> {
     /// The surface where it is seen: in shadow, mirroring, or plain.
     fn surface_at(
         &self,
-        floor: &Floor<'_, R>,
+        surface: &SeenSurface<'_, R>,
         pixel: (u32, u32),
         depth: R,
         point: Vector<R>,
     ) -> Decided<R> {
-        let leaves = floor.surface.support;
+        let leaves = surface.square.support;
         let to_light = self.view.ray_to_light(point, leaves);
         if self
             .view
-            .is_shadowed_by(floor.casters.at(pixel), &to_light)?
+            .is_shadowed_by(surface.casters.at(pixel), &to_light)?
         {
             return Ok((Decision::SurfaceInShadow, None));
         }
-        if let Some(mirror) = &floor.mirror {
+        if let Some(mirror) = &surface.mirror {
             // The eye's ray goes on straight into the reflected scene.
             let ray = Line {
                 origin: point,
@@ -304,9 +307,9 @@ impl<'f, R: Real> Picture<'f, R> {
         let casters = casters.on(solid, hit.face.map(usize::from));
         let by_solid = || view.is_shadowed_by(casters, &ray);
         let by_surface = || {
-            self.floor
+            self.surface
                 .as_ref()
-                .map_or(Ok(false), |floor| floor.surface.is_ahead(&ray))
+                .map_or(Ok(false), |surface| surface.square.is_ahead(&ray))
         };
         any(iter::once_with(turned_away)
             .chain(iter::once_with(by_solid))

@@ -11,14 +11,14 @@
 //!     one row:
 //!               edge    edge         edge         edge      edge            edge
 //!                 |       |            |            |         |               |
-//!      background | floor | its shadow | sphere     | sphere  | floor, mirror | floor
+//!      background | surface | its shadow | sphere   | sphere  | mirror image | surface
 //!                 |       |            | in light   | in dark | image         |
 //!        fill       fill    fill         shade        fill      fill            fill
 //! ```
 //!
 //! - `prepare/` makes a frame: which solids and mirror images there are (`outline`), which of them
 //!   others hide (`culling`), how each is coloured (`bodies`) and what shades it (`shadows`), and
-//!   the surface (`floor`); all of it as plain data (`prepared`) with its edges and paints.
+//!   the surface (`surface`); all of it as plain data (`prepared`) with its edges and paints.
 //! - `edges/` holds the edges on the screen at which a row may change what it shows. Eye rays are
 //!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
 //!   on a plane or of a mirror image is a straight line or an ellipse, and where it crosses a row

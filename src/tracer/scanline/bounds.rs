@@ -281,8 +281,8 @@ fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
         (truth, &truth.view, one.1),
         found,
     );
-    let floors = known.floor.as_ref().zip(truth.floor.as_ref());
-    if let Some((Some(a), Some(b))) = floors.map(|(a, b)| (&a.mirror, &b.mirror)) {
+    let surfaces = known.surface.as_ref().zip(truth.surface.as_ref());
+    if let Some((Some(a), Some(b))) = surfaces.map(|(a, b)| (&a.mirror, &b.mirror)) {
         check_view(
             (known, &a.view, a.reflectance),
             (truth, &b.view, b.reflectance),

@@ -116,8 +116,8 @@ impl<'p, 's> Bodies<'p, 's> {
         if self.picture.stage == Stage::Spheres {
             return Body::Flat(paint(false));
         }
-        let floor = self.picture.floor.as_ref().filter(|_| self.mirrored);
-        let mirror = floor.and_then(|floor| floor.mirror.as_ref());
+        let surface = self.picture.surface.as_ref().filter(|_| self.mirrored);
+        let mirror = surface.and_then(|surface| surface.mirror.as_ref());
         let own = self.picture.solid_color(number);
         let own = mirror.map_or(own, |mirror| own * mirror.reflectance);
         let lighting = self

@@ -12,9 +12,9 @@ use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::bodies::with_bodies;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
-use crate::tracer::scanline::prepare::floor::Floor;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::solids::Solids;
+use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 
 /// A frame, prepared for its rows.
@@ -23,7 +23,7 @@ pub(crate) struct Prepared<'f> {
     pub(crate) edge_table: EdgeTable<'f>,
     pub(crate) paints: AllPaints<'f>,
     pub(crate) background: PaintNumber,
-    pub(crate) floor: Option<Floor<'f>>,
+    pub(crate) surface: Option<PreparedSurface<'f>>,
     direct: Solids<'f>,
     /// How many spheres are shaded.
     pub(crate) shaded_spheres: usize,
@@ -57,8 +57,9 @@ impl<'f> Prepared<'f> {
             outlines.cull(&mut tiles);
             tiles
         });
-        let floor = picture.floor.as_ref();
-        let floor = floor.map(|floor| Floor::new(picture, floor, tiles.as_ref(), &mut parts));
+        let surface = picture.surface.as_ref();
+        let surface = surface
+            .map(|surface| PreparedSurface::new(picture, surface, tiles.as_ref(), &mut parts));
         let direct = with_bodies(picture, &picture.view, outlines, &mut parts);
         let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
@@ -67,7 +68,7 @@ impl<'f> Prepared<'f> {
             edge_table: parts.edge_table.build(),
             paints: parts.paints.all(),
             background,
-            floor,
+            surface,
             direct,
             shaded_spheres: parts.shaded_spheres,
             quadrants,
@@ -77,9 +78,9 @@ impl<'f> Prepared<'f> {
     /// The solids, or those in the mirror. Without a mirror nothing asks for these.
     pub(crate) fn solids(&self, mirrored: bool) -> &Solids<'f> {
         let in_mirror = self
-            .floor
+            .surface
             .as_ref()
-            .and_then(|floor| floor.mirrored.as_ref());
+            .and_then(|surface| surface.mirrored.as_ref());
         in_mirror.filter(|_| mirrored).unwrap_or(&self.direct)
     }
 }

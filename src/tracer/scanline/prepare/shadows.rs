@@ -41,7 +41,7 @@ impl<'p> SurfaceShadow<'p> {
         let rise = -picture.scene.light().direction.y;
         let rise = if mirrored { -rise } else { rise };
         SurfaceShadow {
-            surface: picture.floor.as_ref().map(|floor| &floor.surface),
+            surface: picture.surface.as_ref().map(|surface| &surface.square),
             sides: &picture.scene.facts().sides,
             to_light: view.shading.to_light.vector,
             climb: rise.partial_cmp(&0.0).unwrap_or(Ordering::Equal),

@@ -119,7 +119,7 @@ fn front(
     columns: Columns,
 ) -> Front {
     let view = frame.solids(test.mirrored);
-    let surface = frame.floor.as_ref().map(|floor| floor.depth_at(y));
+    let surface = frame.surface.as_ref().map(|surface| surface.depth_at(y));
     let interval = Rectangle {
         x: [columns.0, columns.1 - 1].map(|column| frame.grid.place(column)),
         y: [y, y],

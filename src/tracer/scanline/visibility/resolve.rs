@@ -1,9 +1,9 @@
 //! Visibility: from the regions that cover a gap to what the gap shows.
 
 use crate::scene::Side;
-use crate::tracer::scanline::prepare::floor::Floor;
 use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
+use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
 
@@ -19,43 +19,43 @@ pub(crate) fn visible(
     };
     // What is above the surface hides it.
     let hides = |&solid: &usize| direct.solids[solid].side == Side::Above;
-    let on_floor = if met.iter().any(hides) {
+    let meets_surface = if met.iter().any(hides) {
         Some(false)
     } else {
         coverage.surface()
     };
-    let floor = match on_floor {
-        Some(on_floor) => frame.floor.as_ref().filter(|_| on_floor),
+    let surface = match meets_surface {
+        Some(meets_surface) => frame.surface.as_ref().filter(|_| meets_surface),
         None => return Visible::UNKNOWN,
     };
-    match (met, floor) {
+    match (met, surface) {
         ([], None) => Visible::Only(Shown::Paint(frame.background)),
-        ([], Some(floor)) => visible_surface(floor, coverage, depth_tests),
-        (_, floor) => {
-            if floor.is_none()
+        ([], Some(surface)) => visible_surface(surface, coverage, depth_tests),
+        (_, surface) => {
+            if surface.is_none()
                 && let Some(solid) = direct.separation.first(met)
             {
                 return Visible::Only(candidate(direct, solid, coverage).shown);
             }
-            let rest = match floor {
-                Some(floor) => visible_surface(floor, coverage, depth_tests),
+            let rest = match surface {
+                Some(surface) => visible_surface(surface, coverage, depth_tests),
                 None => Visible::Only(Shown::Paint(frame.background)),
             };
             let candidates = met.iter().map(|&solid| candidate(direct, solid, coverage));
-            depth_tests.defer(false, candidates, floor.is_some(), rest)
+            depth_tests.defer(false, candidates, surface.is_some(), rest)
         }
     }
 }
 
 /// The same where the surface is met, and no solid in front of it.
 fn visible_surface(
-    floor: &Floor<'_>,
+    surface: &PreparedSurface<'_>,
     coverage: &Coverage,
     depth_tests: &mut DepthTests,
 ) -> Visible {
-    let itself = Visible::Only(Shown::Paint(floor.paint));
-    let mirrored = match (coverage.in_shadow(floor.shadows), &floor.mirrored) {
-        (Some(true), _) => return Visible::Only(Shown::Paint(floor.in_shadow)),
+    let itself = Visible::Only(Shown::Paint(surface.paint));
+    let mirrored = match (coverage.in_shadow(surface.shadows), &surface.mirrored) {
+        (Some(true), _) => return Visible::Only(Shown::Paint(surface.in_shadow)),
         (None, _) => return Visible::UNKNOWN,
         (Some(false), None) => return itself,
         (Some(false), Some(mirrored)) => mirrored,

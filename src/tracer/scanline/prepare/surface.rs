@@ -1,11 +1,11 @@
-//! The surface as a frame's rows cross it.
+//! The surface, prepared for a frame's rows.
 
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, SurfaceCasters};
 use crate::tracer::decision::Decision;
-use crate::tracer::pixel::{self, Picture};
+use crate::tracer::pixel::{Picture, SeenSurface};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
@@ -20,20 +20,23 @@ use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
 
-/// The surface, from stage 5 on.
-pub(crate) struct Floor<'f> {
+/// The surface of a frame, prepared for its rows.
+pub(crate) struct PreparedSurface<'f> {
+    /// The solids that are seen in it, if it mirrors.
     pub(crate) mirrored: Option<Solids<'f>>,
-    depth: Plane,
+    depth: LevelDepth,
+    /// What it shows in the light where it mirrors nothing.
     pub(crate) paint: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
+    /// The receiver of its shadows.
     pub(crate) shadows: Receiver,
 }
 
-impl<'f> Floor<'f> {
-    /// `tiles` tells where solids hide it, where so many overlap that this was looked at.
+impl<'f> PreparedSurface<'f> {
+    /// `tiles` tells where solids hide the surface, if the frame is culled.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
-        floor: &pixel::Floor<'_, Bounded>,
+        surface: &SeenSurface<'_, Bounded>,
         tiles: Option<&Tiles<'f>>,
         parts: &mut Builder<'f, '_>,
     ) -> Self {
@@ -42,41 +45,41 @@ impl<'f> Floor<'f> {
         let [one, three, ten] = [1.0, 3.0, 10.0].map(Bounded::exact);
         let third = one / three;
         // An eye ray reaches the surface at t = Y/3 − (N/2) · height, and z = Z − 10 t there.
-        let height = floor.height_in_pixels;
+        let height = surface.height_in_pixels;
         let plane = PixelPlane {
             origin: Vector::new(
                 zero,
-                floor.surface.height,
+                surface.square.height,
                 Bounded::exact(grid.reach) + ten * height,
             ),
             per_column: Vector::new(one, zero, zero),
             per_row: Vector::new(zero, zero, -(ten * third)),
-            plane: Some(floor.surface.support),
+            plane: Some(surface.square.support),
         };
-        // Three times as large, nothing is a third and rounds: of a surface that is level with the
-        // rows, the edge may lie on all pixels of one.
+        // Scaled by 3, no coefficient is a third, which would round: at α = 0 a side of the square
+        // may pass through all pixels of a row exactly.
         let scaled = [
             plane.origin * three,
             plane.per_column * three,
             Vector::new(zero, zero, -ten),
         ];
-        let sides = floor
-            .surface
-            .sides(scaled, floor.surface.half_width * three);
+        let sides = surface
+            .square
+            .sides(scaled, surface.square.half_width * three);
         let sides =
             sides.map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, grid));
         let scene = picture.scene;
         let magnitude = height.value().abs() + grid.reach;
-        // Rays that rise from the surface meet what is above it ahead. They may touch it at their
-        // very beginning, but there the solid is seen, and not the surface.
+        // A ray to the light that rises from the surface has all solids above the surface ahead. A
+        // solid that touches the ray's origin is seen there itself, and not the surface.
         let rises = scene.light().direction.y < 0.0;
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
-        let depth = Plane {
+        let depth = LevelDepth {
             constant: -height.value(),
             per_row: third.value(),
             error: (height.error() + 8.0 * U * magnitude) * MORE,
         };
-        let rows = floor.extent.rows(grid.size);
+        let rows = surface.extent.rows(grid.size);
         let outline = Region::new(parts.arena.alloc(sides), None, grid).within(rows);
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();
@@ -84,9 +87,9 @@ impl<'f> Floor<'f> {
         let cast = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
         let mut shadows = Growing::new_in(parts.arena);
         shadows.extend(cast.map(|shadow| shadow.within(rows)));
-        let mirror = floor.mirror.as_ref();
+        let mirror = surface.mirror.as_ref();
         let mut mirrored = mirror.map(|mirror| {
-            let within = Some(&floor.extent);
+            let within = Some(&surface.extent);
             Outlines::new(picture, &mirror.view, within, grid, parts.arena)
         });
         if let Some(tiles) = tiles {
@@ -98,7 +101,7 @@ impl<'f> Floor<'f> {
         }
         parts.edge_table.add(outline, RegionKind::Surface);
         let shadows = parts.edge_table.add_receiver(shadows, rows);
-        Floor {
+        PreparedSurface {
             mirrored: mirror
                 .zip(mirrored)
                 .map(|(mirror, outlines)| with_bodies(picture, &mirror.view, outlines, parts)),
@@ -109,23 +112,22 @@ impl<'f> Floor<'f> {
         }
     }
 
-    /// The parameter at which the eye rays at Y reach it, from the least to the most that it can
-    /// be.
+    /// Bounds on the parameter at which the eye rays at Y reach the surface.
     pub(crate) fn depth_at(&self, y: f64) -> (f64, f64) {
         self.depth.at(y)
     }
 }
 
-/// The parameter at which eye rays reach a level plane, which goes linearly with Y, and a bound on
-/// its error.
-struct Plane {
+/// The parameter at which eye rays reach a level plane: constant + per_row · Y.
+struct LevelDepth {
     constant: f64,
     per_row: f64,
+    /// A bound on the error in any row.
     error: f64,
 }
 
-impl Plane {
-    /// From the least to the most that it can be at Y.
+impl LevelDepth {
+    /// Bounds on the parameter at Y.
     fn at(&self, y: f64) -> (f64, f64) {
         let depth = self.constant + self.per_row * y;
         (depth - self.error, depth + self.error)
