@@ -123,7 +123,14 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
             let test = tests.test(number);
             let solids = test.solids.iter();
             let solids: Vec<String> = solids
-                .map(|solid| format!("{} {:?}: {}", solid.solid, solid.facet, shown(solid.shown)))
+                .map(|solid| {
+                    format!(
+                        "{} {:?}: {}",
+                        solid.solid,
+                        solid.front_face,
+                        shown(solid.shown)
+                    )
+                })
                 .collect();
             let rest = words(test.rest, tests);
             format!("{} {} {solids:?} or {rest}", test.mirrored, test.surface)

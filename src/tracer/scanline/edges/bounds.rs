@@ -27,7 +27,7 @@ struct Shares {
     outline: f64,
     half_plane: f64,
     sphere_depth: f64,
-    facet_depth: f64,
+    face_depth: f64,
 }
 
 /// The share of an enclosure's half width that the truth is away from its middle; none where the
@@ -147,7 +147,7 @@ fn check_tetrahedra(
                 let exact = plane.normal.dot(plane.at - ray.origin) / speed;
                 let [x, y] = [column, row].map(|number| [grid.place(number); 2]);
                 let (least, most) = depth.bounds(Rectangle { x, y });
-                shares.facet_depth = shares.facet_depth.max(share(exact, least, most));
+                shares.face_depth = shares.face_depth.max(share(exact, least, most));
             }
         }
     }
@@ -183,8 +183,8 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
         outline,
         half_plane,
         sphere_depth,
-        facet_depth,
+        face_depth,
     } = shares;
-    let least = outline.min(half_plane).min(sphere_depth).min(facet_depth);
+    let least = outline.min(half_plane).min(sphere_depth).min(face_depth);
     assert!(least > 0.1 && least < 1.0, "{shares:?}");
 }

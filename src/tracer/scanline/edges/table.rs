@@ -16,7 +16,7 @@ pub(crate) enum RegionKind {
     Surface,
     /// Their points on a receiver are in one shadow.
     Shadow(Receiver),
-    /// Their eye rays enter the first of two facets last: the region ends at the edge of both.
+    /// Their eye rays enter the first of two front faces last. The region ends at the crease between them.
     Crease,
     /// Their eye rays meet a solid, by its index among those seen directly.
     Direct(usize),
@@ -24,7 +24,7 @@ pub(crate) enum RegionKind {
     Mirrored(usize),
 }
 
-/// The number of what shadows fall on: the surface or a facet.
+/// The number of what shadows fall on: the surface or a front face.
 #[derive(Clone, Copy)]
 pub(crate) struct Receiver(pub(crate) u32);
 

@@ -18,7 +18,7 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
-use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solid, Solids};
+use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, Solid, Solids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::RowSphere;
@@ -87,7 +87,7 @@ impl<'p, 's> Bodies<'p, 's> {
     fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
         match (self.view.spheres.get(solid.number), solid.outline.ellipse()) {
             (Some(sphere), Some(outline)) => self.sphere(solid.number, sphere, outline, parts),
-            _ => self.facets(solid, parts),
+            _ => self.front_faces(solid, parts),
         }
     }
 
@@ -143,14 +143,14 @@ impl<'p, 's> Bodies<'p, 's> {
         }))
     }
 
-    fn facets<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+    fn front_faces<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
         let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
         let t = &self.view.tetrahedra[solid.number - self.view.spheres.len()];
-        let mut facets = Growing::with_capacity_in(solid.facets.len(), arena);
-        for (face, plane) in solid.facets {
+        let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
+        for (face, plane) in solid.front_faces {
             let turned_away = self.shadows && t.solid.turned_away(*face);
             let shadows = if self.shadows && !turned_away {
-                self.shadows_on_facet(solid, (*face, plane), parts)
+                self.shadows_on_face(solid, (*face, plane), parts)
             } else {
                 Growing::new_in(arena)
             };
@@ -158,30 +158,35 @@ impl<'p, 's> Bodies<'p, 's> {
                 let decision = self.decision(solid.number, Some(*face), in_shadow);
                 parts.paints.of(decision)
             };
-            facets.push(Facet {
+            front_faces.push(FrontFace {
                 lit: paint(false),
                 in_shadow: paint(self.shadows),
                 turned_away,
                 shadows: parts.edge_table.add_receiver(shadows, rows),
             });
         }
-        let place = |face: usize| solid.facets.iter().position(|(other, _)| *other == face);
+        let place = |face: usize| {
+            solid
+                .front_faces
+                .iter()
+                .position(|(other, _)| *other == face)
+        };
         let screen = screen_plane(grid);
         let pairs = t.solid.entered_pairs(&t.from_eye);
         let pairs = pairs.filter_map(|(i, j, first)| {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
             let crease = Region::new(crease, None, grid).within(rows);
             Some(Pair {
-                facets: (place(i)?, place(j)?),
+                front_faces: (place(i)?, place(j)?),
                 first: parts.edge_table.add(crease, RegionKind::Crease),
             })
         });
         let pairs = collect(arena, pairs);
-        Body::Facets(facets.into_bump_slice(), pairs)
+        Body::FrontFaces(front_faces.into_bump_slice(), pairs)
     }
 
-    /// The shadows that may fall on a facet.
-    fn shadows_on_facet<'f>(
+    /// The shadows that may fall on a front face.
+    fn shadows_on_face<'f>(
         &self,
         solid: &Outlined<'f>,
         (face, plane): (usize, &PixelPlane),
@@ -192,7 +197,7 @@ impl<'p, 's> Bodies<'p, 's> {
         let casters = casters.on(solid.number, Some(face)).iter();
         let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
-        // Most shadows on the facet's plane fall beside the solid.
+        // Most shadows on the front face's plane fall beside the solid.
         let within = |shadow: Region<'f>| shadow.and(&solid.outline, arena);
         let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(within));

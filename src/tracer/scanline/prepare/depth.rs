@@ -28,45 +28,44 @@ pub(crate) enum Depth<'f> {
         squared_error: f64,
         support: Support,
     },
-    /// The largest of some linear functions of X and Y, one a facet.
-    Facets(&'f [FacetDepth]),
+    /// The largest depth of all front faces: eye rays enter the solid where they enter the last.
+    FrontFaces(&'f [FaceDepth]),
 }
 
-/// The parameter at which eye rays meet the plane of a facet: constant + column · X + row · Y.
-pub(crate) struct FacetDepth {
+/// The parameter at which eye rays meet the plane of a face: constant + column · X + row · Y.
+pub(crate) struct FaceDepth {
     constant: f64,
     column: f64,
     row: f64,
     /// A bound on the error anywhere on the screen.
     error: f64,
-    /// The plane.
     support: Option<Support>,
 }
 
-/// A rectangle of the screen: from one X and Y to others, both ends included.
+/// A rectangle of the screen: an interval of X and one of Y, whose ends are included.
 #[derive(Clone, Copy)]
 pub(crate) struct Rectangle {
     pub(crate) x: [f64; 2],
     pub(crate) y: [f64; 2],
 }
 
-/// The least and the most that is known; everything, where a bound is not a number.
-fn bounds(least: f64, most: f64) -> (f64, f64) {
-    if least.is_nan() || most.is_nan() {
+/// An interval of depths; an end that is not a number says nothing.
+fn bounds(lower: f64, upper: f64) -> (f64, f64) {
+    if lower.is_nan() || upper.is_nan() {
         (f64::NEG_INFINITY, f64::INFINITY)
     } else {
-        (least, most)
+        (lower, upper)
     }
 }
 
-/// The least and the most |x| of a range.
+/// The smallest and the largest |x| in an interval.
 fn magnitudes([a, b]: [f64; 2]) -> [f64; 2] {
     let (low, high) = (a.abs().min(b.abs()), a.abs().max(b.abs()));
     [if a * b <= 0.0 { 0.0 } else { low }, high]
 }
 
-impl FacetDepth {
-    /// Its bounds in a rectangle.
+impl FaceDepth {
+    /// Bounds on the depth in a rectangle.
     pub(crate) fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
         // Rounding keeps order: the extremes of a linear function are at corners.
         let [left, right] = x.map(|x| self.constant + self.column * x);
@@ -79,8 +78,8 @@ impl FacetDepth {
 }
 
 impl Depth<'_> {
-    /// Its bounds in a rectangle: where eye rays enter by `facet`, if that is known.
-    pub(crate) fn bounds(&self, facet: Option<usize>, rectangle: Rectangle) -> (f64, f64) {
+    /// Bounds on the depth in a rectangle; `front_face` is the one that is seen there, if known.
+    pub(crate) fn bounds(&self, front_face: Option<usize>, rectangle: Rectangle) -> (f64, f64) {
         match self {
             Depth::Sphere {
                 m,
@@ -94,39 +93,40 @@ impl Depth<'_> {
                 let m = magnitudes(rectangle.y.map(|y| m.at(y)));
                 let q = magnitudes(rectangle.x.map(|x| x - center_x));
                 let squared = |end: usize| (squared_radius - m[end] * m[end]) - q[end] * q[end];
-                let least = (squared(1) - squared_error).max(0.0).sqrt();
-                let most = (squared(0) + squared_error).max(0.0).sqrt() * MORE;
+                let min_s = (squared(1) - squared_error).max(0.0).sqrt();
+                let max_s = (squared(0) + squared_error).max(0.0).sqrt() * MORE;
                 // 1/√109, from below and from above.
                 const ROOT: f64 = 0.095_782_628_522_115_14;
                 let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / 109.0);
                 bounds(
-                    low - most * ROOT * MORE - error,
-                    high - least * ROOT / MORE / MORE + error,
+                    low - max_s * ROOT * MORE - error,
+                    high - min_s * ROOT / MORE / MORE + error,
                 )
             }
-            Depth::Facets(facets) => match facet.and_then(|facet| facets.get(facet)) {
-                Some(facet) => facet.bounds(rectangle),
-                None => facets.iter().fold(
-                    (f64::NEG_INFINITY, f64::NEG_INFINITY),
-                    |(low, high), facet| {
-                        let (least, most) = facet.bounds(rectangle);
-                        (low.max(least), high.max(most))
-                    },
-                ),
-            },
+            Depth::FrontFaces(front_faces) => {
+                match front_face.and_then(|front_face| front_faces.get(front_face)) {
+                    Some(front_face) => front_face.bounds(rectangle),
+                    None => front_faces.iter().fold(
+                        (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                        |(low, high), front_face| {
+                            let (lower, upper) = front_face.bounds(rectangle);
+                            (low.max(lower), high.max(upper))
+                        },
+                    ),
+                }
+            }
         }
     }
 
-    /// What the points lie on that are seen of it, or of one of its facets: the same sphere or
-    /// plane is met at the same depth.
-    pub(crate) fn support(&self, facet: Option<usize>) -> Option<Support> {
+    /// The sphere, or the plane of a front face: solids of one support have the same depth there.
+    pub(crate) fn support(&self, front_face: Option<usize>) -> Option<Support> {
         match self {
             Depth::Sphere { support, .. } => Some(*support),
-            Depth::Facets(facets) => facets.get(facet?)?.support,
+            Depth::FrontFaces(front_faces) => front_faces.get(front_face?)?.support,
         }
     }
 
-    /// That of a sphere with this outline.
+    /// The depth of a sphere with this outline.
     pub(crate) fn of_sphere(
         center: Vector<Bounded>,
         outline: &Ellipse,
@@ -153,7 +153,7 @@ impl Depth<'_> {
     }
 }
 
-/// The places of the pixels on the screen, where eye rays begin.
+/// The screen, where eye rays begin.
 pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
     let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
     PixelPlane {
@@ -164,13 +164,13 @@ pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
     }
 }
 
-/// Where eye rays meet the plane of a face, and at which parameter.
-pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, FacetDepth) {
+/// The points at which eye rays meet the plane of a face, and the parameters there.
+pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, FaceDepth) {
     let eye = screen_plane(grid);
     let d = looking::<Bounded>().vector;
     // t = −n·(o − a)/(n·d), linear in o.
-    let speed = face.normal.dot(d);
-    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / speed);
+    let n_dot_d = face.normal.dot(d);
+    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / n_dot_d);
     let depths = [
         depth(eye.origin - face.at),
         depth(eye.per_column),
@@ -192,7 +192,7 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
         plane: face.border,
     };
     let [constant, column, row] = depths.map(Bounded::value);
-    let depth = FacetDepth {
+    let depth = FaceDepth {
         constant,
         column,
         row,

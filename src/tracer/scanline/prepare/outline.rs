@@ -14,7 +14,7 @@ use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::culling::Tiles;
-use crate::tracer::scanline::prepare::depth::{Depth, FacetDepth, face_plane, screen_plane};
+use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
 use crate::tracer::view::View;
 
 /// A solid as eye rays meet it.
@@ -24,8 +24,8 @@ pub(crate) struct Outlined<'f> {
     pub(crate) side: Side,
     pub(crate) outline: Region<'f>,
     pub(crate) depth: Depth<'f>,
-    /// Of a tetrahedron, its faces that eye rays enter, and their planes.
-    pub(crate) facets: &'f [(usize, PixelPlane)],
+    /// The front faces of a tetrahedron: their face numbers and their planes.
+    pub(crate) front_faces: &'f [(usize, PixelPlane)],
 }
 
 /// The solids that are seen directly, or in the mirror, within an extent of the screen.
@@ -86,7 +86,7 @@ impl<'f> Outlines<'f> {
                         side,
                         depth: Depth::of_sphere(sphere.center, &ellipse, sphere.support, grid),
                         outline: Region::new(&[], Some(ellipse), grid).within(rows),
-                        facets: &[],
+                        front_faces: &[],
                     }
                 }
                 None => {
@@ -95,19 +95,20 @@ impl<'f> Outlines<'f> {
                     let met = t.solid.met(&t.from_eye);
                     let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));
                     let faces = t.from_eye.entered();
-                    let facets = faces.map(|face| (face, face_plane(t.solid.plane(face), grid)));
-                    let mut depths = bumpalo::collections::Vec::<FacetDepth>::new_in(arena);
-                    let facets = facets.map(|(face, (plane, depth))| {
+                    let front_faces =
+                        faces.map(|face| (face, face_plane(t.solid.plane(face), grid)));
+                    let mut depths = bumpalo::collections::Vec::<FaceDepth>::new_in(arena);
+                    let front_faces = front_faces.map(|(face, (plane, depth))| {
                         depths.push(depth);
                         (face, plane)
                     });
-                    let facets = collect(arena, facets);
+                    let front_faces = collect(arena, front_faces);
                     Outlined {
                         number,
                         side,
                         outline: Region::new(collect(arena, met), None, grid).within(rows),
-                        depth: Depth::Facets(depths.into_bump_slice()),
-                        facets,
+                        depth: Depth::FrontFaces(depths.into_bump_slice()),
+                        front_faces,
                     }
                 }
             });

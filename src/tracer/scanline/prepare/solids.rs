@@ -1,4 +1,4 @@
-//! The solids as a frame's rows cross them: seen directly, or in the mirror.
+//! The solids of a frame, prepared for its rows: seen directly, or in the mirror.
 
 use crate::scene::Side;
 use crate::tracer::scanline::edges::table::Receiver;
@@ -7,31 +7,33 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
-/// The solids of a view that are seen.
+/// The solids of a view that may be seen.
 pub(crate) struct Solids<'f> {
     pub(crate) mirrored: bool,
     pub(crate) solids: &'f [Solid<'f>],
-    /// Which is in front of which.
+    /// The order of the solids that a plane separates.
     pub(crate) separation: Separation<'f>,
 }
 
-/// One of them.
+/// A solid that may be seen.
 pub(crate) struct Solid<'f> {
     pub(crate) side: Side,
     pub(crate) depth: Depth<'f>,
     pub(crate) body: Body<'f>,
 }
 
-/// How its pixels are coloured.
+/// How the pixels of a solid are coloured.
 pub(crate) enum Body<'f> {
-    /// All alike.
+    /// All pixels show one paint.
     Flat(PaintNumber),
+    /// The pixels of a sphere are shaded.
     Sphere(&'f ShadedSphere<'f>),
-    Facets(&'f [Facet], &'f [Pair]),
+    /// Each front face of a tetrahedron has its paints. The pairs tell which one is seen.
+    FrontFaces(&'f [FrontFace], &'f [Pair]),
 }
 
-/// A face that eye rays enter.
-pub(crate) struct Facet {
+/// A face of a tetrahedron that eye rays enter.
+pub(crate) struct FrontFace {
     pub(crate) lit: PaintNumber,
     pub(crate) in_shadow: PaintNumber,
     /// Whether all of it is turned away from the light, and so in shadow.
@@ -39,8 +41,10 @@ pub(crate) struct Facet {
     pub(crate) shadows: Receiver,
 }
 
-/// Two facets, the first of the lower number, and the edge of where eye rays enter that last.
+/// Two front faces that share an edge.
 pub(crate) struct Pair {
-    pub(crate) facets: (usize, usize),
+    /// Their indices; the first has the lower face number.
+    pub(crate) front_faces: (usize, usize),
+    /// The number of the region in which eye rays enter the first one last.
     pub(crate) first: usize,
 }

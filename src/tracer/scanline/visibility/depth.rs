@@ -132,18 +132,18 @@ fn front(
     for Near { place, least: kept } in near {
         let other = &test.solids[*place];
         let solid = &view.solids[other.solid];
-        let support = solid.depth.support(other.facet);
+        let support = solid.depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
         // Where they are the same sphere, or faces in the same plane, the first is seen.
         if let Front::Solid(first) = front
             && let first = &test.solids[*first]
             && support.is_some()
-            && view.solids[first.solid].depth.support(first.facet) == support
+            && view.solids[first.solid].depth.support(first.front_face) == support
         {
             *kept = *begins;
             continue;
         }
-        let (least, most) = solid.depth.bounds(other.facet, interval);
+        let (least, most) = solid.depth.bounds(other.front_face, interval);
         *kept = least;
         // The rays that the surface mirrors begin there: a solid before that is not met.
         if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)

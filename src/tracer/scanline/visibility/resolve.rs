@@ -2,7 +2,7 @@
 
 use crate::scene::Side;
 use crate::tracer::scanline::prepare::prepared::Prepared;
-use crate::tracer::scanline::prepare::solids::{Body, Facet, Pair, Solids};
+use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, Solids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
@@ -80,9 +80,9 @@ fn visible_surface(
     depth_tests.defer(true, candidates, false, itself)
 }
 
-/// What a column shows where it sees a solid.
+/// What a gap shows where a solid is in front.
 fn candidate(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Candidate {
-    let (facet, shown) = match &view.solids[solid].body {
+    let (front_face, shown) = match &view.solids[solid].body {
         Body::Flat(paint) => (None, Shown::Paint(*paint)),
         Body::Sphere(_) => {
             let shown = Shown::Sphere {
@@ -91,36 +91,36 @@ fn candidate(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Candidate 
             };
             (None, shown)
         }
-        Body::Facets(facets, pairs) => match last_entered(pairs, coverage) {
-            Some(last) => (Some(last), facet_in(&facets[last], coverage)),
+        Body::FrontFaces(front_faces, pairs) => match last_entered(pairs, coverage) {
+            Some(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
             None => (None, Shown::Unknown),
         },
     };
     Candidate {
         solid,
-        facet,
+        front_face,
         shown,
     }
 }
 
-/// What it shows where it sees a face.
-fn facet_in(facet: &Facet, coverage: &Coverage) -> Shown {
-    if facet.turned_away {
-        return Shown::Paint(facet.in_shadow);
+/// What a gap shows where it sees a front face.
+fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
+    if front_face.turned_away {
+        return Shown::Paint(front_face.in_shadow);
     }
-    match coverage.in_shadow(facet.shadows) {
-        Some(true) => Shown::Paint(facet.in_shadow),
-        Some(false) => Shown::Paint(facet.lit),
+    match coverage.in_shadow(front_face.shadows) {
+        Some(true) => Shown::Paint(front_face.in_shadow),
+        Some(false) => Shown::Paint(front_face.lit),
         None => Shown::Unknown,
     }
 }
 
-/// The facet that eye rays enter last.
+/// The front face that eye rays enter last.
 fn last_entered(pairs: &[Pair], coverage: &Coverage) -> Option<usize> {
     let mut last = 0;
     for pair in pairs {
-        if pair.facets.0 == last && !coverage.holds(pair.first)? {
-            last = pair.facets.1;
+        if pair.front_faces.0 == last && !coverage.holds(pair.first)? {
+            last = pair.front_faces.1;
         }
     }
     Some(last)

@@ -73,8 +73,8 @@ impl Packed {
 pub(crate) struct Candidate {
     /// Its place among the solids or those in the mirror.
     pub(crate) solid: usize,
-    /// The facet that is seen of a tetrahedron, where that is known.
-    pub(crate) facet: Option<usize>,
+    /// The index of the front face that is seen of a tetrahedron, if known.
+    pub(crate) front_face: Option<usize>,
     /// What it shows where it is in front.
     pub(crate) shown: Shown,
 }
