@@ -60,7 +60,7 @@ pub(crate) use explain::{name, say};
 use frame_work::{FrameWork, with_frame};
 pub use in_doubt::InDoubt;
 pub use kernel::Kernel;
-use ladder::{Lines, Pixels, Rung};
+use ladder::{Pixels, RowPixels, Rung};
 use pool::{Pool, lock};
 pub use progress::Progress;
 use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
@@ -323,7 +323,7 @@ impl Tracer {
 
     fn trace_rows(
         &mut self,
-        pixels: &impl Lines,
+        pixels: &impl RowPixels,
         precision: Precision,
         target: Target<'_>,
         arena: &Arena,
@@ -420,7 +420,7 @@ struct TraceFrame<'t> {
 impl FrameWork for TraceFrame<'_> {
     type Output = ();
 
-    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) {
+    fn by_rows(self, pixels: &impl RowPixels, precision: Precision, arena: &Arena) {
         let trace = |tracer: &mut Tracer, target: Target<'_>| {
             tracer.trace_rows(pixels, precision, target, arena)
         };
@@ -445,7 +445,12 @@ impl FrameWork for ExplainPixel {
     type Output = (String, Rung);
 
     /// As it is traced, with the rest of its row.
-    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) -> (String, Rung) {
+    fn by_rows(
+        self,
+        pixels: &impl RowPixels,
+        precision: Precision,
+        arena: &Arena,
+    ) -> (String, Rung) {
         let (column, row) = self.at;
         let size = pixels.bounded().size as usize;
         let (mut samples, mut decisions) = (vec![0.0; 3 * size], vec![Decision::Background; size]);

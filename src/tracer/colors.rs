@@ -2,7 +2,7 @@
 
 use super::arena::Arena;
 use super::decision::{Decision, Seen};
-use super::ladder::{Ladder, Lines, Rung};
+use super::ladder::{Ladder, RowPixels, Rung};
 use super::pixel::SeenSurface;
 use crate::number::Bounded;
 use crate::scene::Scene;

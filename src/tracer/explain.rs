@@ -9,7 +9,7 @@ use super::decision::{Decision, Seen};
 use super::line::{Hit, Line};
 use super::pixel::{Picture, Pixel};
 use super::vector::Vector;
-use super::view::{Solids, View};
+use super::view::{SolidKinds, View};
 use crate::image::display_byte;
 use crate::number::Real;
 use crate::scene::Scene;
@@ -109,9 +109,9 @@ impl<R: Real> Picture<'_, R> {
             ),
         );
         let solids = match self.stage {
-            Stage::Spheres => Solids::Spheres,
-            Stage::Tetrahedron => Solids::Tetrahedra,
-            _ => Solids::All,
+            Stage::Spheres => SolidKinds::Spheres,
+            Stage::Tetrahedron => SolidKinds::Tetrahedra,
+            _ => SolidKinds::All,
         };
         let first = self.view.first_hit((column, row), &ray, None, solids)?;
         for (solid, hit) in self.view.hits((column, row), &ray, false, solids)? {
@@ -186,7 +186,7 @@ impl<R: Real> Picture<'_, R> {
                     for (solid, hit) in
                         mirror
                             .view
-                            .hits((column, row), &looking, true, Solids::All)?
+                            .hits((column, row), &looking, true, SolidKinds::All)?
                     {
                         let t = Short(self.parameter(&looking, &hit));
                         say(
@@ -230,7 +230,7 @@ impl<R: Real> Picture<'_, R> {
     ) -> Result<(), R::Doubt> {
         let solid = usize::from(seen.solid);
         let only = view
-            .hits(pixel, ray, mirrored, Solids::All)?
+            .hits(pixel, ray, mirrored, SolidKinds::All)?
             .into_iter()
             .find(|(index, _)| *index == solid);
         let Some((_, hit)) = only else { return Ok(()) };

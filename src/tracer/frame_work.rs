@@ -3,7 +3,7 @@
 use super::arena::Arena;
 use super::error::TraceError;
 use super::kernel::Kernel;
-use super::ladder::{Ladder, Lines, Pixels, Plain, Rung};
+use super::ladder::{Ladder, Pixels, Plain, RowPixels, Rung};
 use super::listing::Listing;
 use super::scanline::Precision;
 use crate::scene::Scene;
@@ -14,7 +14,7 @@ pub(super) trait FrameWork {
     type Output;
 
     /// Where the kernel traces whole rows; what lives as long as the frame lies in the arena.
-    fn by_rows(self, pixels: &impl Lines, precision: Precision, arena: &Arena) -> Self::Output;
+    fn by_rows(self, pixels: &impl RowPixels, precision: Precision, arena: &Arena) -> Self::Output;
 
     /// Where it goes pixel by pixel.
     fn by_pixels(self, pixels: &impl Pixels) -> Self::Output;

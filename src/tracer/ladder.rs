@@ -40,9 +40,9 @@ pub(super) trait Pixels: Sync {
     fn explain(&self, column: u32, row: u32, traced: Pixel) -> String;
 }
 
-/// The pixels of a frame that can be traced row by row: their colour, but for spheres in the light,
-/// is told by the decision.
-pub(super) trait Lines: Pixels {
+/// The pixels of a frame that can be traced row by row. All pixels of one decision have one colour,
+/// except those of spheres in the light.
+pub(super) trait RowPixels: Pixels {
     /// The frame as f64 with a bound knows it.
     fn bounded(&self) -> &Picture<'_, Bounded>;
 
@@ -135,7 +135,7 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
     }
 }
 
-impl<R: Real<Doubt = Infallible> + Sync> Lines for Plain<'_, R> {
+impl<R: Real<Doubt = Infallible> + Sync> RowPixels for Plain<'_, R> {
     fn bounded(&self) -> &Picture<'_, Bounded> {
         &self.bounded
     }
@@ -309,7 +309,7 @@ impl Question for Explain {
     }
 }
 
-impl Lines for Ladder<'_> {
+impl RowPixels for Ladder<'_> {
     fn bounded(&self) -> &Picture<'_, Bounded> {
         &self.bounded
     }

@@ -1,4 +1,4 @@
-//! Lines and rays: what an eye, a mirror or a shadow looks along.
+//! Lines and rays.
 
 use std::cmp::Ordering;
 

@@ -59,7 +59,7 @@ pub(super) struct Listing<'a> {
 }
 
 /// A solid where a line meets it.
-struct Met {
+struct ListingHit {
     seen: Seen,
     point: DVec3,
     normal: DVec3,
@@ -120,10 +120,10 @@ impl<'a> Listing<'a> {
     }
 
     /// Sphere `i` along a line, i = 0 or 1.
-    fn meet_sphere(&self, i: usize, from: DVec3, dir: DVec3) -> Option<Met> {
+    fn meet_sphere(&self, i: usize, from: DVec3, dir: DVec3) -> Option<ListingHit> {
         let sphere = &self.spheres[i];
         let point = get_inter_point_sphere(from, dir, sphere)?;
-        Some(Met {
+        Some(ListingHit {
             seen: Seen {
                 solid: i as u16,
                 face: None,
@@ -136,9 +136,9 @@ impl<'a> Listing<'a> {
     }
 
     /// The tetrahedron along a line.
-    fn meet_tetrahedron(&self, from: DVec3, dir: DVec3) -> Option<Met> {
+    fn meet_tetrahedron(&self, from: DVec3, dir: DVec3) -> Option<ListingHit> {
         let (point, face) = get_inter_point_tetrahedron(from, dir, &self.t)?;
-        Some(Met {
+        Some(ListingHit {
             seen: Seen {
                 solid: 2,
                 face: Some(face as u8),
@@ -164,24 +164,28 @@ impl<'a> Listing<'a> {
     ///
     /// Slip (Code 5-1): section V.1 lets a shadow fall on any point, but nothing asks for one here:
     /// only the surface receives shadows.
-    fn shaded(&self, met: &Met) -> DVec3 {
-        get_pixel_color(self.lig_dir, self.look_at, met.normal, self.scene) * met.color
+    fn shaded(&self, hit: &ListingHit) -> DVec3 {
+        get_pixel_color(self.lig_dir, self.look_at, hit.normal, self.scene) * hit.color
     }
 
     /// The nearest solid, coloured by `color`, or the background.
-    fn seen(&self, nearest: Option<Met>, color: impl Fn(&Met) -> DVec3) -> (Decision, DVec3) {
+    fn seen(
+        &self,
+        nearest: Option<ListingHit>,
+        color: impl Fn(&ListingHit) -> DVec3,
+    ) -> (Decision, DVec3) {
         match nearest {
-            Some(met) => (Decision::Solid(met.seen), color(&met)),
+            Some(hit) => (Decision::Solid(hit.seen), color(&hit)),
             None => (Decision::Background, self.scene.background()),
         }
     }
 
-    fn nearest_sphere(&self, pixel: DVec3) -> Option<Met> {
+    fn nearest_sphere(&self, pixel: DVec3) -> Option<ListingHit> {
         let [sphere1, sphere2] = [0, 1].map(|i| self.meet_sphere(i, pixel, self.look_at));
         nearer(pixel, sphere1, sphere2)
     }
 
-    fn nearest_solid(&self, pixel: DVec3) -> Option<Met> {
+    fn nearest_solid(&self, pixel: DVec3) -> Option<ListingHit> {
         let tetrahedron = self.meet_tetrahedron(pixel, self.look_at);
         nearer(pixel, self.nearest_sphere(pixel), tetrahedron)
     }
@@ -191,11 +195,11 @@ impl<'a> Listing<'a> {
         let interpoint0 = get_inter_point_surface(pixel, self.look_at, &self.sur);
         let nearest = self.nearest_solid(pixel);
         match (nearest, interpoint0) {
-            (Some(met), Some(point)) if pixel.distance(point) < pixel.distance(met.point) => {
+            (Some(hit), Some(point)) if pixel.distance(point) < pixel.distance(hit.point) => {
                 self.surface_at(point)
             }
             (None, Some(point)) => self.surface_at(point),
-            (nearest, _) => self.seen(nearest, |met| self.shaded(met)),
+            (nearest, _) => self.seen(nearest, |hit| self.shaded(hit)),
         }
     }
 
@@ -245,11 +249,11 @@ impl Pixels for Listing<'_> {
                 let number = quadrant(column, row, self.size);
                 (Decision::Quadrant(number), QUADRANTS[usize::from(number)])
             }
-            Stage::Spheres => self.seen(self.nearest_sphere(pixel), |met| met.color),
+            Stage::Spheres => self.seen(self.nearest_sphere(pixel), |hit| hit.color),
             Stage::Tetrahedron => {
-                self.seen(self.meet_tetrahedron(pixel, self.look_at), |met| met.color)
+                self.seen(self.meet_tetrahedron(pixel, self.look_at), |hit| hit.color)
             }
-            Stage::Shading => self.seen(self.nearest_solid(pixel), |met| self.shaded(met)),
+            Stage::Shading => self.seen(self.nearest_solid(pixel), |hit| self.shaded(hit)),
             Stage::Shadow | Stage::Reflection | Stage::Animation => self.glazed_surface(pixel),
         };
         let samples = color.to_array().map(|sample| sample as f32);
@@ -263,7 +267,11 @@ impl Pixels for Listing<'_> {
 }
 
 /// Of two solids the one nearer to the pixel, and of two that are as near the first.
-fn nearer(pixel: DVec3, first: Option<Met>, second: Option<Met>) -> Option<Met> {
+fn nearer(
+    pixel: DVec3,
+    first: Option<ListingHit>,
+    second: Option<ListingHit>,
+) -> Option<ListingHit> {
     match (first, second) {
         (Some(first), Some(second))
             if pixel.distance(second.point) < pixel.distance(first.point) =>

@@ -13,7 +13,7 @@ use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
-use super::view::{FrameBearings, Solids, View};
+use super::view::{FrameBearings, SolidKinds, View};
 use crate::number::{Real, all, any};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -101,9 +101,9 @@ impl<'f, R: Real> Picture<'f, R> {
     pub(super) fn decide(&self, column: u32, row: u32) -> Decided<R> {
         match self.stage {
             Stage::Image => Ok((Decision::Quadrant(quadrant(column, row, self.size)), None)),
-            Stage::Spheres => self.solid_alone(column, row, Solids::Spheres),
-            Stage::Tetrahedron => self.solid_alone(column, row, Solids::Tetrahedra),
-            Stage::Shading => self.solid_alone(column, row, Solids::All),
+            Stage::Spheres => self.solid_alone(column, row, SolidKinds::Spheres),
+            Stage::Tetrahedron => self.solid_alone(column, row, SolidKinds::Tetrahedra),
+            Stage::Shading => self.solid_alone(column, row, SolidKinds::All),
             Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(column, row),
         }
     }
@@ -126,7 +126,7 @@ impl<'f, R: Real> Picture<'f, R> {
             _ => return Ok(None),
         };
         let ray = self.eye_ray(column, row);
-        let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, Solids::All)? else {
+        let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, SolidKinds::All)? else {
             return Ok(None);
         };
         if self.stage >= Stage::Shadow && view.shading.facing_light(&hit.normal)?.is_le() {
@@ -196,7 +196,7 @@ impl<'f, R: Real> Picture<'f, R> {
     }
 
     /// Stages 2 to 4: the first hit, without shadows.
-    fn solid_alone(&self, column: u32, row: u32, solids: Solids) -> Decided<R> {
+    fn solid_alone(&self, column: u32, row: u32, solids: SolidKinds) -> Decided<R> {
         let ray = self.eye_ray(column, row);
         let hit = self.view.first_hit((column, row), &ray, None, solids)?;
         Ok(match hit {
@@ -216,7 +216,7 @@ impl<'f, R: Real> Picture<'f, R> {
         let ray = self.eye_ray(column, row);
         let hit = self
             .view
-            .first_hit((column, row), &ray, None, Solids::All)?;
+            .first_hit((column, row), &ray, None, SolidKinds::All)?;
         if let Some(surface) = self
             .surface
             .as_ref()
@@ -289,7 +289,7 @@ impl<'f, R: Real> Picture<'f, R> {
             if let Some((solid, hit)) =
                 mirror
                     .view
-                    .first_hit(pixel, &ray, Some(depth), Solids::All)?
+                    .first_hit(pixel, &ray, Some(depth), SolidKinds::All)?
             {
                 let in_shadow = self.in_shadow(&mirror.view, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);

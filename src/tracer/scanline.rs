@@ -80,7 +80,7 @@ use fearless_simd::Level;
 use super::arena::Arena;
 use super::decision::Decision;
 use super::in_doubt::InDoubt;
-use super::ladder::Lines;
+use super::ladder::RowPixels;
 use super::pixel::quadrant;
 use super::progress::Progress;
 use active::ActiveEdges;
@@ -90,7 +90,7 @@ pub(super) use precision::Precision;
 use prepare::prepared::Prepared;
 use prepare::solids::Body;
 use shade::columns::SphereCache;
-use shade::run::Shading;
+use shade::run::RunScratch;
 use visibility::coverage::Coverage;
 use visibility::depth::Settled;
 use visibility::resolve::visible;
@@ -124,10 +124,10 @@ pub(super) struct Scratch {
 #[derive(Default)]
 struct Shade {
     cache: SphereCache,
-    shading: Shading,
+    run: RunScratch,
 }
 
-impl<'f, P: Lines> RowTracer<'f, P> {
+impl<'f, P: RowPixels> RowTracer<'f, P> {
     /// The frame that `pixels` are of.
     pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
         RowTracer::culled_from(CULL_FROM, pixels, precision, level, arena)
@@ -257,11 +257,11 @@ impl<'f, P: Lines> RowTracer<'f, P> {
                     &self.frame.solids(mirrored).solids[solid as usize].body
                 {
                     let paint = &self.frame.paints[shaded.in_shadow];
-                    let Shade { cache, shading } = shade;
+                    let Shade { cache, run } = shade;
                     let sphere_columns = cache.of(shaded, row.number, self.level, self.frame.grid);
-                    row.shade(columns, shaded, &sphere_columns, paint, shading);
-                    if !shading.doubts.is_empty() {
-                        row.ask(shading.doubts.drain(..), self.pixels);
+                    row.shade(columns, shaded, &sphere_columns, paint, run);
+                    if !run.doubts.is_empty() {
+                        row.ask(run.doubts.drain(..), self.pixels);
                     }
                 }
             }

@@ -43,7 +43,7 @@ impl<R: Real> Frame<R> {
             halfway: if all(parallel.into_iter().chain([same_way]))? {
                 Halfway::None
             } else {
-                Halfway::Good
+                Halfway::Computed
             },
         })
     }
@@ -61,16 +61,15 @@ pub(super) struct Bearings<'f> {
     halfway: Halfway,
 }
 
-/// How h can be had.
+/// How the halfway vector h is found.
 #[derive(Clone, Copy)]
 enum Halfway {
-    /// Not at all: v + l = 0, the light comes straight into the eye.
+    /// There is none: v + l = 0, the light comes straight into the eye.
     None,
-    /// In any number.
-    Good,
-    /// Hardly: the light comes so nearly into the eye that v + l cancels. Arbitrary precision has
-    /// computed it.
-    Poor(Vector<DoubleDouble>),
+    /// Every number computes it well enough.
+    Computed,
+    /// v + l nearly cancels, so this h was computed in arbitrary precision.
+    Given(Vector<DoubleDouble>),
 }
 
 impl Bearings<'_> {
@@ -88,11 +87,12 @@ impl Bearings<'_> {
                 let h = frame.halfway(scene, mirrored);
                 // 15 bits more than an f32 has leave few pixels in doubt.
                 const ENOUGH: f64 = f32::EPSILON as f64 * f32::EPSILON as f64 * 128.0;
-                let poor = [h.x, h.y, h.z].iter().any(|x| {
-                    let known = x.error() < ENOUGH;
-                    !known
-                });
-                if poor { Halfway::Poor(refine()) } else { other }
+                let is_good = [h.x, h.y, h.z].iter().all(|x| x.error() < ENOUGH);
+                if is_good {
+                    other
+                } else {
+                    Halfway::Given(refine())
+                }
             }
         };
         Bearings { halfway, ..self }
@@ -135,9 +135,9 @@ pub(super) struct TetrahedronInView<R> {
     pub(super) to_light: Sight<R>,
 }
 
-/// Which solids take part.
+/// Which solids take part in a stage.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Solids {
+pub(super) enum SolidKinds {
     Spheres,
     Tetrahedra,
     All,
@@ -157,15 +157,15 @@ impl<'f, R: Real> View<'f, R> {
         let to_light = frame.way_to_light(scene, mirrored);
         let halfway = match bearings.halfway {
             Halfway::None => None,
-            Halfway::Poor(known) => {
+            Halfway::Given(given) => {
                 let own = halfway(&looking(), &to_light);
                 Some(Vector::new(
-                    own.x.or_better(known.x),
-                    own.y.or_better(known.y),
-                    own.z.or_better(known.z),
+                    own.x.or_better(given.x),
+                    own.y.or_better(given.y),
+                    own.z.or_better(given.z),
                 ))
             }
-            Halfway::Good => Some(halfway(&looking(), &to_light)),
+            Halfway::Computed => Some(halfway(&looking(), &to_light)),
         };
         let spheres =
             scene
@@ -214,7 +214,7 @@ impl<'f, R: Real> View<'f, R> {
         (column, row): (u32, u32),
         ray: &Line<R>,
         from: Option<R>,
-        solids: Solids,
+        kinds: SolidKinds,
     ) -> Result<Option<(usize, Hit<R>)>, R::Doubt> {
         let y = self.extents.place(row);
         let mut first: Option<(usize, Hit<R>)> = None;
@@ -231,7 +231,7 @@ impl<'f, R: Real> View<'f, R> {
                     break;
                 }
             }
-            let Some(hit) = self.hit(solid, ray, from.is_some(), solids)? else {
+            let Some(hit) = self.hit(solid, ray, from.is_some(), kinds)? else {
                 continue;
             };
             let order = match &first {
@@ -271,12 +271,12 @@ impl<'f, R: Real> View<'f, R> {
         solid: usize,
         ray: &Line<R>,
         ahead: bool,
-        solids: Solids,
+        kinds: SolidKinds,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
         match self.spheres.get(solid) {
             Some(sphere) => {
                 let takes_part =
-                    solids != Solids::Tetrahedra && (!ahead || sphere.is_ahead(ray)?);
+                    kinds != SolidKinds::Tetrahedra && (!ahead || sphere.is_ahead(ray)?);
                 if takes_part {
                     sphere.first_hit(ray)
                 } else {
@@ -285,8 +285,8 @@ impl<'f, R: Real> View<'f, R> {
             }
             None => {
                 let t = &self.tetrahedra[solid - self.spheres.len()];
-                let takes_part =
-                    solids != Solids::Spheres && (!ahead || t.solid.is_ahead(&t.from_eye, ray)?);
+                let takes_part = kinds != SolidKinds::Spheres
+                    && (!ahead || t.solid.is_ahead(&t.from_eye, ray)?);
                 if takes_part {
                     t.solid.first_hit(&t.from_eye, ray)
                 } else {
@@ -302,11 +302,11 @@ impl<'f, R: Real> View<'f, R> {
         pixel: (u32, u32),
         ray: &Line<R>,
         ahead: bool,
-        solids: Solids,
+        kinds: SolidKinds,
     ) -> Result<Vec<(usize, Hit<R>)>, R::Doubt> {
         let mut all = Vec::new();
         for solid in self.extents.at(pixel) {
-            if let Some(hit) = self.hit(solid, ray, ahead, solids)? {
+            if let Some(hit) = self.hit(solid, ray, ahead, kinds)? {
                 all.push((solid, hit));
             }
         }

@@ -10,7 +10,7 @@ use crate::number::{Bounded, DoubleDouble, Real};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
-use crate::tracer::ladder::{Ladder, Lines, Rung};
+use crate::tracer::ladder::{Ladder, RowPixels, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
@@ -235,11 +235,11 @@ impl Case<'_> {
     }
 }
 
-/// A picture, its view or that in the mirror, and what colours are multiplied with in that.
-type Seen<'s, R> = (&'s Picture<'s, R>, &'s View<'s, R>, R);
+/// A picture, one of its views, and the factor of colours in that view: the reflectance, or 1.
+type ViewCase<'s, R> = (&'s Picture<'s, R>, &'s View<'s, R>, R);
 
-/// The spheres of a view, as f64 with bounds knows it, and in truth.
-fn check_view(known: Seen<'_, Bounded>, truth: Seen<'_, DoubleDouble>, found: &mut Found) {
+/// Checks the spheres of a view: `known` is in f64 with bounds, `truth` in double-doubles.
+fn check_view(known: ViewCase<'_, Bounded>, truth: ViewCase<'_, DoubleDouble>, found: &mut Found) {
     let grid = Grid::new(SIZE);
     let (view, true_view) = (known.1, truth.1);
     for (index, sphere) in view.spheres.iter().enumerate() {

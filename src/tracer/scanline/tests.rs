@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::decision::{Decision, Seen};
-use crate::tracer::ladder::{Ladder, Lines, Pixels as _, Rung};
+use crate::tracer::ladder::{Ladder, Pixels as _, RowPixels, Rung};
 
 /// All of the surface in the shadow of one sphere, and in those of others.
 const SHADOW_IN_SHADOW: &str = "# Shadows within a shadow
@@ -80,7 +80,7 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
 }
 
 /// The spans of a row, from the left: where each ends, and what is visible there.
-fn spans<P: Lines>(
+fn spans<P: RowPixels>(
     tracer: &RowTracer<'_, P>,
     row: u32,
     scratch: &mut Scratch,

@@ -11,7 +11,7 @@ use crate::random::Random;
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
-use crate::tracer::ladder::{Ladder, Lines as _, Rung};
+use crate::tracer::ladder::{Ladder, RowPixels as _, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::Enclosure;

@@ -18,7 +18,9 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
-use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, Solid, Solids};
+use crate::tracer::scanline::prepare::solids::{
+    Body, FrontFace, Pair, PreparedSolid, PreparedSolids,
+};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::RowSphere;
@@ -33,7 +35,7 @@ pub(crate) fn with_bodies<'f>(
     view: &View<'_, Bounded>,
     outlines: Outlines<'f>,
     parts: &mut Builder<'f, '_>,
-) -> Solids<'f> {
+) -> PreparedSolids<'f> {
     let (arena, mirrored) = (parts.arena, outlines.mirrored);
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let bodies = Bodies::new(picture, view, mirrored);
@@ -46,13 +48,13 @@ pub(crate) fn with_bodies<'f>(
             RegionKind::Direct(place)
         };
         parts.edge_table.add(solid.outline, edge);
-        solids.push(Solid {
+        solids.push(PreparedSolid {
             side: solid.side,
             depth: solid.depth,
             body,
         });
     }
-    Solids {
+    PreparedSolids {
         mirrored,
         solids: solids.into_bump_slice(),
         separation: Separation::new(view, numbers, arena),

@@ -13,7 +13,7 @@ use crate::tracer::scanline::prepare::bodies::with_bodies;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
-use crate::tracer::scanline::prepare::solids::Solids;
+use crate::tracer::scanline::prepare::solids::PreparedSolids;
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 
@@ -24,7 +24,7 @@ pub(crate) struct Prepared<'f> {
     pub(crate) paints: AllPaints<'f>,
     pub(crate) background: PaintNumber,
     pub(crate) surface: Option<PreparedSurface<'f>>,
-    direct: Solids<'f>,
+    direct: PreparedSolids<'f>,
     /// How many spheres are shaded.
     pub(crate) shaded_spheres: usize,
     /// The picture of code 2-1, where that is the stage.
@@ -76,7 +76,7 @@ impl<'f> Prepared<'f> {
     }
 
     /// The solids, or those in the mirror. Without a mirror nothing asks for these.
-    pub(crate) fn solids(&self, mirrored: bool) -> &Solids<'f> {
+    pub(crate) fn solids(&self, mirrored: bool) -> &PreparedSolids<'f> {
         let in_mirror = self
             .surface
             .as_ref()

@@ -8,15 +8,15 @@ use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
 /// The solids of a view that may be seen.
-pub(crate) struct Solids<'f> {
+pub(crate) struct PreparedSolids<'f> {
     pub(crate) mirrored: bool,
-    pub(crate) solids: &'f [Solid<'f>],
+    pub(crate) solids: &'f [PreparedSolid<'f>],
     /// The order of the solids that a plane separates.
     pub(crate) separation: Separation<'f>,
 }
 
 /// A solid that may be seen.
-pub(crate) struct Solid<'f> {
+pub(crate) struct PreparedSolid<'f> {
     pub(crate) side: Side,
     pub(crate) depth: Depth<'f>,
     pub(crate) body: Body<'f>,

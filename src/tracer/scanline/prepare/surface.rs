@@ -15,7 +15,7 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::shadows::shadows_on;
-use crate::tracer::scanline::prepare::solids::Solids;
+use crate::tracer::scanline::prepare::solids::PreparedSolids;
 use crate::tracer::scanline::rounding::{MORE, U};
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
@@ -23,7 +23,7 @@ use crate::tracer::vector::Vector;
 /// The surface of a frame, prepared for its rows.
 pub(crate) struct PreparedSurface<'f> {
     /// The solids that are seen in it, if it mirrors.
-    pub(crate) mirrored: Option<Solids<'f>>,
+    pub(crate) mirrored: Option<PreparedSolids<'f>>,
     depth: LevelDepth,
     /// What it shows in the light where it mirrors nothing.
     pub(crate) paint: PaintNumber,

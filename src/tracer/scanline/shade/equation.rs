@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
-use crate::tracer::scanline::shade::policy::{Answers, Mask, Policy, Samples, Vector};
+use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, Samples};
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, SphereHighlight};
 
 // No closures below: see `shade/run.rs`.
@@ -24,7 +24,7 @@ pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
     sphere: &'s RowSphere,
     m: f64,
     /// R² − m².
-    squared: Vector<S, P>,
+    squared: LaneVector<S, P>,
 }
 
 impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
@@ -41,7 +41,11 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
 
     /// A linear form at some hits.
     #[inline(always)]
-    pub(crate) fn value(&self, form: &LinearForm, hits: &Hits<Vector<S, P>>) -> Vector<S, P> {
+    pub(crate) fn value(
+        &self,
+        form: &LinearForm,
+        hits: &Hits<LaneVector<S, P>>,
+    ) -> LaneVector<S, P> {
         let q = splat::<S, P>(self.simd, form.q);
         let s = splat::<S, P>(self.simd, form.s);
         let of_row = splat::<S, P>(self.simd, form.of_row(self.m));
@@ -50,7 +54,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
 
     /// The hits from X = `x` on: s = √(R² − m² − q²).
     #[inline(always)]
-    pub(crate) fn hits(&self, x: f64) -> Hits<Vector<S, P>> {
+    pub(crate) fn hits(&self, x: f64) -> Hits<LaneVector<S, P>> {
         let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
         let squared = P::product_plus(q, -q, self.squared);
         Hits {
@@ -61,9 +65,9 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
 
     /// n·l from each of two places on; of the first where a vector holds all pixels from there on.
     #[inline(always)]
-    pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [Vector<S, P>; 2] {
+    pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [LaneVector<S, P>; 2] {
         let mut lights = [self.value(&self.sphere.light, &self.hits(x)); 2];
-        if Vector::<S, P>::LEN < S::f32s::LEN {
+        if LaneVector::<S, P>::LEN < S::f32s::LEN {
             lights[1] = self.value(&self.sphere.light, &self.hits(next));
         }
         lights
@@ -71,7 +75,11 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
 
     /// Which hits have a caster between them and the light.
     #[inline(always)]
-    pub(crate) fn behind(&self, caster: &Caster<'_>, hits: &Hits<Vector<S, P>>) -> Answers<S, P> {
+    pub(crate) fn behind(
+        &self,
+        caster: &Caster<'_>,
+        hits: &Hits<LaneVector<S, P>>,
+    ) -> Answers<S, P> {
         match caster {
             Caster::Polyhedron(forms) => {
                 let (mut yes, mut no) = (self.mask(true), self.mask(false));
@@ -125,7 +133,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     pub(crate) fn lit(
         &self,
         x: f64,
-        light: Vector<S, P>,
+        light: LaneVector<S, P>,
         ambient: &Samples<S, P>,
         (zone, bright): (usize, u64),
     ) -> Samples<S, P> {
@@ -159,9 +167,9 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     fn highlight(
         &self,
         highlight: &SphereHighlight,
-        hits: &Hits<Vector<S, P>>,
+        hits: &Hits<LaneVector<S, P>>,
         (zone, bright): (usize, u64),
-    ) -> P::Sides<Vector<S, P>> {
+    ) -> P::Sides<LaneVector<S, P>> {
         let (simd, of) = (self.simd, P::Lane::of);
         // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
         // is bright.
@@ -183,13 +191,17 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
 }
 
 #[inline(always)]
-fn splat<S: Simd, P: Policy<S>>(simd: S, value: f64) -> Vector<S, P> {
-    Vector::<S, P>::splat(simd, P::Lane::of(value))
+fn splat<S: Simd, P: Policy<S>>(simd: S, value: f64) -> LaneVector<S, P> {
+    LaneVector::<S, P>::splat(simd, P::Lane::of(value))
 }
 
 /// (1 − `missing`)ⁿ, by squaring.
 #[inline(always)]
-fn power<S: Simd, P: Policy<S>>(simd: S, missing: Vector<S, P>, exponent: u32) -> Vector<S, P> {
+fn power<S: Simd, P: Policy<S>>(
+    simd: S,
+    missing: LaneVector<S, P>,
+    exponent: u32,
+) -> LaneVector<S, P> {
     let mut power = P::factor(splat::<S, P>(simd, 0.0));
     let (mut square, mut bits) = (P::factor(missing), exponent);
     loop {

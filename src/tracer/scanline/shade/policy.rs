@@ -10,18 +10,18 @@ use fearless_simd::prelude::*;
 
 use crate::tracer::scanline::shade::lane::Lane;
 
-/// A vector of a policy.
-pub(crate) type Vector<S, P> = <<P as Policy<S>>::Lane as Lane>::Vector<S>;
+/// A SIMD vector of a policy's floats.
+pub(crate) type LaneVector<S, P> = <<P as Policy<S>>::Lane as Lane>::Vector<S>;
 
 /// A vector's pixels of which the answer to a question is yes, and those of which it is no: with
 /// bounds some may be neither.
 pub(crate) type Answers<S, P> = (Mask<S, P>, Mask<S, P>);
 
 /// Some pixels of a vector.
-pub(crate) type Mask<S, P> = <Vector<S, P> as SimdBase<S>>::Mask;
+pub(crate) type Mask<S, P> = <LaneVector<S, P> as SimdBase<S>>::Mask;
 
 /// Three vectors of samples as they lie in memory.
-pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<Vector<S, P>>; 3];
+pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<LaneVector<S, P>>; 3];
 
 /// What is known of errors.
 pub(crate) trait Policy<S: Simd> {
@@ -31,42 +31,49 @@ pub(crate) trait Policy<S: Simd> {
     type Sides<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
 
     /// a b + c.
-    fn product_plus(a: Vector<S, Self>, b: Vector<S, Self>, c: Vector<S, Self>) -> Vector<S, Self>;
+    fn product_plus(
+        a: LaneVector<S, Self>,
+        b: LaneVector<S, Self>,
+        c: LaneVector<S, Self>,
+    ) -> LaneVector<S, Self>;
 
     /// Whether depths, which have a bound on their errors, are 0 or more.
-    fn is_inside(depth: Vector<S, Self>, error: f64) -> Answers<S, Self>;
+    fn is_inside(depth: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
 
     /// Numbers that have a bound on their errors.
-    fn within(value: Vector<S, Self>, error: Vector<S, Self>) -> Self::Sides<Vector<S, Self>>;
+    fn within(
+        value: LaneVector<S, Self>,
+        error: LaneVector<S, Self>,
+    ) -> Self::Sides<LaneVector<S, Self>>;
 
     /// 1 − `missing` in the form in which its powers are computed.
     #[inline(always)]
-    fn factor(missing: Vector<S, Self>) -> Vector<S, Self> {
+    fn factor(missing: LaneVector<S, Self>) -> LaneVector<S, Self> {
         -missing + <Self::Lane as Lane>::of(1.0)
     }
 
     /// The product of two factors.
     #[inline(always)]
-    fn product(a: Vector<S, Self>, b: Vector<S, Self>) -> Vector<S, Self> {
+    fn product(a: LaneVector<S, Self>, b: LaneVector<S, Self>) -> LaneVector<S, Self> {
         a * b
     }
 
     /// The square of a factor.
     #[inline(always)]
-    fn square(factor: Vector<S, Self>) -> Vector<S, Self> {
+    fn square(factor: LaneVector<S, Self>) -> LaneVector<S, Self> {
         factor * factor
     }
 
     /// The number that a factor stands for.
     #[inline(always)]
-    fn value(factor: Vector<S, Self>) -> Vector<S, Self> {
+    fn value(factor: LaneVector<S, Self>) -> LaneVector<S, Self> {
         factor
     }
 
     /// Highlights of the pixels that may have one, bit by bit. Those of others are at most 2⁻⁵⁹,
     /// which bounds on the errors of samples count, and are 0 where there are no bounds.
     #[inline(always)]
-    fn where_bright(_: S, highlight: Vector<S, Self>, _: u64) -> Vector<S, Self> {
+    fn where_bright(_: S, highlight: LaneVector<S, Self>, _: u64) -> LaneVector<S, Self> {
         highlight
     }
 

@@ -8,16 +8,16 @@ use fearless_simd::prelude::*;
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::SphereInRow;
-use crate::tracer::scanline::shade::policy::{Policy, Vector};
+use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
 use crate::tracer::scanline::write::paint::{Paint, fill};
 
 /// What the shading of a run needs, kept for the next.
 #[derive(Default)]
-pub(crate) struct Shading {
-    /// Which casters can cast a shadow on any pixel of the run.
-    pub(crate) in_reach: Vec<usize>,
+pub(crate) struct RunScratch {
+    /// The casters that may cast a shadow on any pixel of the run.
+    pub(crate) casters: Vec<usize>,
     /// The columns left in doubt.
     pub(crate) doubts: Vec<u32>,
 }
@@ -38,7 +38,7 @@ pub(crate) struct Run<'r> {
     pub(crate) decisions: Option<&'r mut [Decision]>,
     /// What pixels in shadow show.
     pub(crate) in_shadow: &'r Paint,
-    pub(crate) shading: &'r mut Shading,
+    pub(crate) scratch: &'r mut RunScratch,
 }
 
 // No closures below: the instructions of a level are only there for what is inlined into its
@@ -92,9 +92,9 @@ impl Run<'_> {
 #[inline(always)]
 pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
     // So many pixels are written at a time; where a vector holds fewer, they are in two of them.
-    let (width, lanes) = (S::f32s::LEN, Vector::<S, P>::LEN);
+    let (width, lanes) = (S::f32s::LEN, LaneVector::<S, P>::LEN);
     let row = SphereInRow::<S, P>::new(simd, &shaded.sphere, run.y);
-    let asks = !run.is_facing || !run.shading.in_reach.is_empty();
+    let asks = !run.is_facing || !run.scratch.casters.is_empty();
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
     let (mut done, mut first) = (0, 0);
@@ -145,8 +145,8 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         while doubts != 0 {
             // Where this vector has written over the one before, its own bounds count.
             let doubt = column + doubts.trailing_zeros();
-            if doubt >= run.from + done as u32 || !run.shading.doubts.contains(&doubt) {
-                run.shading.doubts.push(doubt);
+            if doubt >= run.from + done as u32 || !run.scratch.doubts.contains(&doubt) {
+                run.scratch.doubts.push(doubt);
             }
             doubts &= doubts - 1;
         }
@@ -163,15 +163,15 @@ fn shadowed<S: Simd, P: Policy<S>>(
     shaded: &ShadedSphere<'_>,
     run: &Run<'_>,
     x: f64,
-    light: Vector<S, P>,
+    light: LaneVector<S, P>,
 ) -> (u64, u64) {
     let (mut dark, mut lit) = (row.mask(false), row.mask(true));
     if !run.is_facing {
         (dark, lit) = P::is_inside(-light, shaded.sphere.light.error);
     }
-    if !run.shading.in_reach.is_empty() {
+    if !run.scratch.casters.is_empty() {
         let hits = row.hits(x);
-        for &caster in &run.shading.in_reach {
+        for &caster in &run.scratch.casters {
             let (behind, free) = row.behind(&shaded.casters[caster], &hits);
             dark |= behind;
             lit &= free;

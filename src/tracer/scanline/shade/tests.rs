@@ -8,7 +8,7 @@ use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Body;
 use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::run::{Run, Shading, shade};
+use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::tests::{each_frame, lit};
 
@@ -38,8 +38,8 @@ fn check(
         let count = (to - from) as usize;
         let mut samples = vec![0.0; 3 * count];
         let mut decisions = vec![Decision::Background; count];
-        let mut shading = Shading::default();
-        shading.in_reach.extend(0..shaded.casters.len());
+        let mut scratch = RunScratch::default();
+        scratch.casters.extend(0..shaded.casters.len());
         let mut run = Run {
             grid: frame.grid,
             y: frame.grid.place(row),
@@ -50,7 +50,7 @@ fn check(
             samples: &mut samples,
             decisions: Some(&mut decisions),
             in_shadow: &frame.paints[shaded.in_shadow],
-            shading: &mut shading,
+            scratch: &mut scratch,
         };
         dispatch!(level, simd => shade::<_, Certified>(simd, shaded, &mut run));
         for (column, (samples, decided)) in (from..).zip(samples.chunks(3).zip(decisions)) {
@@ -58,7 +58,7 @@ fn check(
             if lit(decision) != shaded.lit {
                 continue;
             }
-            if shading.doubts.contains(&column) {
+            if scratch.doubts.contains(&column) {
                 counts.in_doubt += 1;
                 continue;
             }

@@ -14,10 +14,11 @@ pub(crate) enum Cover {
     Unknown,
 }
 
-/// How many regions of one kind cover the column, and of how many this is unknown.
+/// How many regions of one kind cover the column.
 #[derive(Clone, Copy, Default)]
 struct Tally {
     certain: u32,
+    /// How many more may cover it.
     unknown: u32,
 }
 
@@ -39,21 +40,21 @@ impl Tally {
         }
     }
 
-    /// Whether any of the regions covers the column, where that is known.
+    /// Whether any of the regions covers the column; `None` where that is in doubt.
     fn any(self) -> Option<bool> {
         (self.certain > 0 || self.unknown == 0).then_some(self.certain > 0)
     }
 }
 
-/// Solids met in a column, in their order.
+/// The solids that eye rays or mirrored rays meet in a column, by increasing index.
 #[derive(Default)]
-pub(crate) struct Met {
+pub(crate) struct CoveringSolids {
     solids: Vec<usize>,
     tally: Tally,
 }
 
-impl Met {
-    /// The solids, if they are known.
+impl CoveringSolids {
+    /// The solids, if none is in doubt.
     pub(crate) fn known(&self) -> Option<&[usize]> {
         (self.tally.unknown == 0).then_some(&self.solids)
     }
@@ -80,8 +81,10 @@ impl Met {
 pub(crate) struct Coverage {
     /// By the number of the region.
     covers: Vec<Cover>,
-    pub(crate) direct: Met,
-    pub(crate) mirrored: Met,
+    /// Solids seen directly.
+    pub(crate) direct: CoveringSolids,
+    /// Solids seen in the mirror.
+    pub(crate) mirrored: CoveringSolids,
     surface: Tally,
     /// The shadows on each receiver.
     shadows: Vec<Tally>,
@@ -116,7 +119,7 @@ impl Coverage {
         self.surface.any()
     }
 
-    /// Whether a receiver is in shadow there.
+    /// Whether a receiver is in shadow in the column.
     pub(crate) fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
         self.shadows[number as usize].any()
     }

@@ -2,7 +2,7 @@
 
 use crate::scene::Side;
 use crate::tracer::scanline::prepare::prepared::Prepared;
-use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, Solids};
+use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
@@ -81,7 +81,7 @@ fn visible_surface(
 }
 
 /// What a gap shows where a solid is in front.
-fn candidate(view: &Solids<'_>, solid: usize, coverage: &Coverage) -> Candidate {
+fn candidate(view: &PreparedSolids<'_>, solid: usize, coverage: &Coverage) -> Candidate {
     let (front_face, shown) = match &view.solids[solid].body {
         Body::Flat(paint) => (None, Shown::Paint(*paint)),
         Body::Sphere(_) => {

@@ -11,7 +11,7 @@ use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::precision::Precision;
 use crate::tracer::scanline::shade::columns::{SphereColumns, bit_of};
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::run::{Run, Shading, shade};
+use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
@@ -94,18 +94,18 @@ impl<'r> Row<'r> {
         }
     }
 
-    /// A sphere. What is left in doubt is in `shading`.
+    /// A sphere. What is left in doubt is in `scratch`.
     pub(crate) fn shade(
         &mut self,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         sphere_columns: &SphereColumns,
         in_shadow: &'r Paint,
-        shading: &mut Shading,
+        scratch: &mut RunScratch,
     ) {
         let known = both(columns, sphere_columns.known);
-        shading.doubts.extend(columns.0..known.0);
-        shading.doubts.extend(known.1..columns.1);
+        scratch.doubts.extend(columns.0..known.0);
+        scratch.doubts.extend(known.1..columns.1);
         let facing = match sphere_columns.facing {
             _ if !shaded.sphere.shadows => Some((known, true)),
             facing => facing,
@@ -116,7 +116,7 @@ impl<'r> Row<'r> {
                 shaded,
                 (sphere_columns, is_facing),
                 in_shadow,
-                shading,
+                scratch,
             );
         };
         match facing {
@@ -146,13 +146,13 @@ impl<'r> Row<'r> {
         shaded: &ShadedSphere<'_>,
         (sphere_columns, is_facing): (&SphereColumns, bool),
         in_shadow: &Paint,
-        shading: &mut Shading,
+        scratch: &mut RunScratch,
     ) {
         if columns.0 == columns.1 {
             return;
         }
         self.mark_written();
-        shading.in_reach.clear();
+        scratch.casters.clear();
         if sphere_columns.casters != 0 {
             let place = |column| self.grid.place(column);
             let ends = (place(columns.0), place(columns.1 - 1));
@@ -161,7 +161,7 @@ impl<'r> Row<'r> {
             let near = casters.filter(|(number, caster)| {
                 sphere_columns.casters & bit_of(*number) != 0 && !caster.misses(&hits)
             });
-            shading.in_reach.extend(near.map(|(number, _)| number));
+            scratch.casters.extend(near.map(|(number, _)| number));
         }
         let range = self.pixels(columns);
         let mut run = Run {
@@ -174,7 +174,7 @@ impl<'r> Row<'r> {
             samples: &mut self.samples[3 * range.start..3 * range.end],
             decisions: self.decisions.as_mut().map(|all| &mut all[range]),
             in_shadow,
-            shading,
+            scratch,
         };
         dispatch!(self.level, simd => match self.precision {
             Precision::Bounded => shade::<_, Certified>(simd, shaded, &mut run),
