@@ -1,4 +1,4 @@
-//! From number to number: each pixel by the cheapest arithmetic that leaves no doubt about it.
+//! The filter: each pixel is settled by the cheapest arithmetic that leaves no doubt about it.
 
 use std::cell::LazyCell;
 use std::convert::Infallible;
@@ -15,7 +15,7 @@ use super::line::Normal;
 use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::vector::Vector;
-use super::view::FrameBearings;
+use super::view::FrameSigns;
 use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real, Session};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -50,28 +50,28 @@ pub(super) trait RowPixels: Pixels {
     fn color(&self, decision: Decision) -> [f32; 3];
 }
 
-/// What all arithmetics of a frame build on.
-struct Basis<'f> {
+/// What every arithmetic of a frame builds on.
+struct FrameSetup<'f> {
     frame: Frame<Bounded>,
-    bearings: FrameBearings<'f>,
+    signs: FrameSigns<'f>,
     extents: Extents<'f>,
 }
 
-impl<'f> Basis<'f> {
+impl<'f> FrameSetup<'f> {
     fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
         let bounded = frame::<Bounded>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
-        let bearings = |mirrored| {
+        let signs = |mirrored| {
             bounded
-                .bearings(scene, mirrored, arena)
-                .or_else(|Doubt| double_double.bearings(scene, mirrored, arena))
+                .signs(scene, mirrored, arena)
+                .or_else(|Doubt| double_double.signs(scene, mirrored, arena))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        frame::<Expression>(alpha, size).bearings(scene, mirrored, arena)
+                        frame::<Expression>(alpha, size).signs(scene, mirrored, arena)
                     })
                 })
-                .map(|bearings| {
-                    bearings.refined(scene, &bounded, mirrored, || {
+                .map(|signs| {
+                    signs.refined(scene, &bounded, mirrored, || {
                         Expression::session(|| {
                             let h = frame::<Expression>(alpha, size).halfway(scene, mirrored);
                             Vector {
@@ -83,10 +83,10 @@ impl<'f> Basis<'f> {
                     })
                 })
         };
-        let Ok(bearings) = FrameBearings::decide(mirrors(scene, stage), bearings);
-        Basis {
+        let Ok(signs) = FrameSigns::decide(mirrors(scene, stage), signs);
+        FrameSetup {
             frame: bounded,
-            bearings,
+            signs,
             extents: Extents::new(scene, &bounded, size, arena),
         }
     }
@@ -102,12 +102,12 @@ impl<'f> Basis<'f> {
     where
         'f: 'a,
     {
-        let (bearings, extents) = (&self.bearings, &self.extents);
-        Picture::new(scene, stage, frame, size, bearings, extents, room)
+        let (signs, extents) = (&self.signs, &self.extents);
+        Picture::new(scene, stage, frame, size, signs, extents, room)
     }
 }
 
-/// A kernel of one number that always answers.
+/// The pixels of a kernel whose number never leaves a doubt.
 pub(super) struct Plain<'f, R> {
     bounded: Picture<'f, Bounded>,
     picture: Picture<'f, R>,
@@ -122,10 +122,10 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
         arena: &'f Arena,
     ) -> Self {
         let arena = &arena.frame;
-        let basis = Basis::new(scene, stage, alpha, size, arena);
+        let setup = FrameSetup::new(scene, stage, alpha, size, arena);
         Plain {
-            bounded: basis.picture(scene, stage, &basis.frame, size, &arena),
-            picture: basis.picture(scene, stage, &frame(alpha, size), size, &arena),
+            bounded: setup.picture(scene, stage, &setup.frame, size, &arena),
+            picture: setup.picture(scene, stage, &frame(alpha, size), size, &arena),
         }
     }
 
@@ -157,27 +157,27 @@ impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
     }
 }
 
-/// The kernels that are right: f64 with a bound, then double-doubles with a bound, then as many
-/// digits as it takes.
+/// The pixels of the certified kernels: f64 with a bound, then double-doubles with a bound, then
+/// arbitrary precision.
 pub(super) struct Ladder<'f> {
     scene: &'f Scene,
     stage: Stage,
     alpha: f64,
     size: u32,
-    basis: Basis<'f>,
+    setup: FrameSetup<'f>,
     lowest: Rung,
     bounded: Picture<'f, Bounded>,
-    /// Made when it is first needed, in `late`.
+    /// Made in `late` when it is first needed.
     double_double: OnceLock<Picture<'f, DoubleDouble>>,
     late: &'f Herd,
-    /// Made when all are in use.
-    desks: Mutex<Vec<Desk<'f>>>,
+    /// Pictures that no thread is using. A thread that finds none makes one.
+    arbitrary: Mutex<Vec<ArbitraryPicture<'f>>>,
     colors: Palette<'f>,
 }
 
-/// The frame in arbitrary precision, for one thread at a time: what is found out about it for one
-/// pixel is known for the next.
-struct Desk<'f> {
+/// The frame in arbitrary precision, for one thread at a time. Digits that one pixel needed are kept
+/// for the next.
+struct ArbitraryPicture<'f> {
     session: Session,
     picture: Picture<'f, Expression>,
 }
@@ -193,18 +193,18 @@ impl<'f> Ladder<'f> {
         arena: &'f Arena,
     ) -> Self {
         let Arena { frame: arena, late } = arena;
-        let basis = Basis::new(scene, stage, alpha, size, arena);
+        let setup = FrameSetup::new(scene, stage, alpha, size, arena);
         Ladder {
             scene,
             stage,
             alpha,
             size,
             lowest,
-            bounded: basis.picture(scene, stage, &basis.frame, size, &arena),
-            basis,
+            bounded: setup.picture(scene, stage, &setup.frame, size, &arena),
+            setup,
             double_double: OnceLock::new(),
             late,
-            desks: Mutex::default(),
+            arbitrary: Mutex::default(),
             colors: Palette::new(scene, arena),
         }
     }
@@ -219,22 +219,24 @@ impl<'f> Ladder<'f> {
     /// The answer of the cheapest arithmetic that has one, and which that was.
     fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
         if self.lowest == Rung::Double
-            && let Ok(answer) = question.put_to(&self.bounded)
+            && let Ok(answer) = question.answer(&self.bounded)
         {
             return (answer, Rung::Double);
         }
         let double_double = self
             .double_double
             .get_or_init(|| self.picture(&self.late.get()));
-        if let Ok(answer) = question.put_to(double_double) {
+        if let Ok(answer) = question.answer(double_double) {
             return (answer, Rung::DoubleDouble);
         }
-        let mut desk = self.desks().pop().unwrap_or_else(|| {
+        let mut arbitrary = self.arbitrary().pop().unwrap_or_else(|| {
             let (session, picture) = Session::begin(|| self.picture(&self.late.get()));
-            Desk { session, picture }
+            ArbitraryPicture { session, picture }
         });
-        let Ok(answer) = desk.session.go_on(|| question.put_to(&desk.picture));
-        self.desks().push(desk);
+        let Ok(answer) = arbitrary
+            .session
+            .go_on(|| question.answer(&arbitrary.picture));
+        self.arbitrary().push(arbitrary);
         (answer, Rung::Arbitrary)
     }
 
@@ -244,35 +246,36 @@ impl<'f> Ladder<'f> {
         self.settle(&ColorIf(decision, column, row)).0
     }
 
-    fn desks(&self) -> MutexGuard<'_, Vec<Desk<'f>>> {
+    fn arbitrary(&self) -> MutexGuard<'_, Vec<ArbitraryPicture<'f>>> {
         // Nothing happens under the lock that could fail halfway.
-        self.desks.lock().unwrap_or_else(PoisonError::into_inner)
+        self.arbitrary
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The frame in any number.
+    /// The picture in any number.
     pub(super) fn picture<'a, R: Real>(&self, room: &impl Room<'a>) -> Picture<'a, R>
     where
         'f: 'a,
     {
         let frame = frame(self.alpha, self.size);
-        self.basis
+        self.setup
             .picture(self.scene, self.stage, &frame, self.size, room)
     }
 }
 
-/// What a picture in any number can be asked.
+/// A question that a picture in any number answers.
 trait Question {
     type Answer;
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
 }
 
-/// What the pixel at a column and a row shows, and its samples where the decision alone does not
-/// tell them.
+/// The decision of the pixel at a column and a row, and its samples if it has a normal.
 struct PixelAt(u32, u32);
 
 impl Question for PixelAt {
     type Answer = (Decision, Option<[f32; 3]>);
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
         let (decision, normal) = picture.decide(self.0, self.1)?;
         let color = normal.map(|normal| picture.color(decision, Some(&normal)));
         Ok((decision, color.transpose()?))
@@ -284,7 +287,7 @@ struct ColorOf(Decision);
 
 impl Question for ColorOf {
     type Answer = [f32; 3];
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<[f32; 3], R::Doubt> {
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<[f32; 3], R::Doubt> {
         picture.color(self.0, None)
     }
 }
@@ -294,17 +297,17 @@ struct ColorIf(Decision, u32, u32);
 
 impl Question for ColorIf {
     type Answer = Option<[f32; 3]>;
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
         picture.color_if(self.0, self.1, self.2)
     }
 }
 
-/// The same pixel, worked through.
+/// A pixel worked through.
 struct Explain(u32, u32, Pixel);
 
 impl Question for Explain {
     type Answer = String;
-    fn put_to<R: Real>(&self, picture: &Picture<'_, R>) -> Result<String, R::Doubt> {
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<String, R::Doubt> {
         picture.explain(self.0, self.1, self.2)
     }
 }
@@ -314,8 +317,8 @@ impl RowPixels for Ladder<'_> {
         &self.bounded
     }
 
-    /// They are settled once: where a face's colour lies halfway between two floats, it does so in
-    /// all its pixels, and arbitrary precision takes its time to see it.
+    /// Each colour is settled once: a colour halfway between two floats needs arbitrary precision,
+    /// which is too slow for every pixel of a face.
     fn color(&self, decision: Decision) -> [f32; 3] {
         let settle = || self.settle(&ColorOf(decision)).0;
         *self.colors.get(decision).get_or_init(settle)

@@ -13,7 +13,7 @@ use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
-use super::view::{FrameBearings, SolidKinds, View};
+use super::view::{FrameSigns, SolidKinds, View};
 use crate::number::{Real, all, any};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -59,13 +59,13 @@ pub(super) type Pixel = (Decision, [f32; 3]);
 type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
 
 impl<'f, R: Real> Picture<'f, R> {
-    /// `bearings` and `extents` are those of the same frame.
+    /// `signs` and `extents` are those of the same frame.
     pub(super) fn new(
         scene: &'f Scene,
         stage: Stage,
         frame: &Frame<R>,
         size: u32,
-        bearings: &FrameBearings<'_>,
+        signs: &FrameSigns<'_>,
         extents: &Extents<'f>,
         room: &impl Room<'f>,
     ) -> Self {
@@ -78,8 +78,8 @@ impl<'f, R: Real> Picture<'f, R> {
                     casters,
                     color: Vector::exact(described.color),
                     height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
-                    mirror: bearings.mirrored.as_ref().map(|bearings| Mirror {
-                        view: View::new(scene, frame, bearings, extents.mirrored, true, room),
+                    mirror: signs.mirrored.as_ref().map(|signs| Mirror {
+                        view: View::new(scene, frame, signs, extents.mirrored, true, room),
                         reflectance: R::exact(described.reflectance),
                     }),
                 })
@@ -91,7 +91,7 @@ impl<'f, R: Real> Picture<'f, R> {
             stage,
             size,
             frame: *frame,
-            view: View::new(scene, frame, &bearings.direct, extents.direct, false, room),
+            view: View::new(scene, frame, &signs.direct, extents.direct, false, room),
             surface,
         }
     }

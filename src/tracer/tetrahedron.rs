@@ -47,12 +47,13 @@ pub(super) struct HalfSpace<R> {
     pub(super) normal: Vector<R>,
     pub(super) at: Vector<R>,
     pub(super) closed: bool,
-    /// The plane of its border, where that is known to be one that rays leave.
+    /// The plane of the border, if rays may leave it.
     pub(super) border: Option<Support>,
 }
 
 impl<R: Real> HalfSpace<R> {
-    /// Whether the line's origin is in it; one on the border is known by name.
+    /// Whether the line's origin is in the half-space. An origin on the border is recognised by its
+    /// support, without any arithmetic.
     fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
         if self.border.is_some() && self.border == line.leaves {
             return Ok(self.closed);
@@ -62,19 +63,19 @@ impl<R: Real> HalfSpace<R> {
     }
 }
 
-/// A tetrahedron as lines of one direction meet it.
-pub(super) struct Sight<R> {
+/// The edge functions of a tetrahedron for all lines of one direction d.
+pub(super) struct EdgeFunctions<R> {
     /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
     /// where it runs along.
-    crossing: [Ordering; 4],
-    /// g itself.
-    speed: [R; 4],
+    face_signs: [Ordering; 4],
+    /// g of each face.
+    n_dot_d: [R; 4],
     /// The moment of each of [`EDGES`]: (n_i × n_j) × d without its positive factor.
     moments: [Vector<R>; 6],
 }
 
-impl<R> Sight<R> {
-    /// The faces that lines enter, in order.
+impl<R> EdgeFunctions<R> {
+    /// The faces that lines enter, in the order of their numbers.
     pub(super) fn entered(&self) -> impl Iterator<Item = usize> {
         faces(self, Ordering::Less)
     }
@@ -105,31 +106,35 @@ impl<R: Real> Tetrahedron<R> {
     }
 
     /// The sign of n·d for each face.
-    pub(super) fn crossing(&self, direction: &Direction<R>) -> Result<[Ordering; 4], R::Doubt> {
-        let mut crossing = [Ordering::Equal; 4];
-        for (sign, normal) in crossing.iter_mut().zip(self.normals) {
+    pub(super) fn face_signs(&self, direction: &Direction<R>) -> Result<[Ordering; 4], R::Doubt> {
+        let mut face_signs = [Ordering::Equal; 4];
+        for (sign, normal) in face_signs.iter_mut().zip(self.normals) {
             *sign = normal.dot(direction.vector).sign()?;
         }
-        Ok(crossing)
+        Ok(face_signs)
     }
 
-    /// What all lines of one direction share. `crossing` is that of [`Tetrahedron::crossing`].
-    pub(super) fn sight(&self, direction: &Direction<R>, crossing: [Ordering; 4]) -> Sight<R> {
-        let speed = self.normals.map(|normal| normal.dot(direction.vector));
+    /// The edge functions for a direction, of which [`Tetrahedron::face_signs`] gave `face_signs`.
+    pub(super) fn edge_functions(
+        &self,
+        direction: &Direction<R>,
+        face_signs: [Ordering; 4],
+    ) -> EdgeFunctions<R> {
+        let n_dot_d = self.normals.map(|normal| normal.dot(direction.vector));
         let moments = EDGES.map(|(_, _, [from, to])| {
             let moment = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
             if self.right_handed { moment } else { -moment }
         });
-        Sight {
-            crossing,
-            speed,
+        EdgeFunctions {
+            face_signs,
+            n_dot_d,
             moments,
         }
     }
 
-    /// What all lines toward the light share.
-    pub(super) fn sight_of_light(&self, to_light: &Direction<R>) -> Sight<R> {
-        self.sight(to_light, self.facing_light)
+    /// The edge functions for the direction to the light.
+    pub(super) fn edge_functions_to_light(&self, to_light: &Direction<R>) -> EdgeFunctions<R> {
+        self.edge_functions(to_light, self.facing_light)
     }
 
     /// The normal of a face, which is that of all its points.
@@ -145,7 +150,7 @@ impl<R: Real> Tetrahedron<R> {
         self.vertices
     }
 
-    /// The half-space of a face, from within.
+    /// The closed half-space of a face that holds the solid.
     pub(super) fn plane(&self, face: usize) -> HalfSpace<R> {
         self.inside(face, true)
     }
@@ -172,9 +177,9 @@ impl<R: Real> Tetrahedron<R> {
 
     /// Where the edge function of `EDGES[edge]` is not negative, for its faces i < j. Where lines
     /// enter i and leave j that is where t_i ≤ t_j; where they enter both, where t_i ≥ t_j.
-    fn side(&self, edge: usize, sight: &Sight<R>) -> HalfSpace<R> {
+    fn side(&self, edge: usize, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
         HalfSpace {
-            normal: sight.moments[edge],
+            normal: functions.moments[edge],
             at: self.vertices[EDGES[edge].2[0]],
             closed: true,
             border: None,
@@ -185,12 +190,12 @@ impl<R: Real> Tetrahedron<R> {
     /// after they have left one, and are outside of none that they run along.
     pub(super) fn met<'a>(
         &'a self,
-        sight: &'a Sight<R>,
+        functions: &'a EdgeFunctions<R>,
     ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
-        let beside = faces(sight, Ordering::Equal).map(|face| self.inside(face, true));
+        let beside = faces(functions, Ordering::Equal).map(|face| self.inside(face, true));
         let pairs = EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
-            let side = self.side(edge, sight);
-            match (sight.crossing[i], sight.crossing[j]) {
+            let side = self.side(edge, functions);
+            match (functions.face_signs[i], functions.face_signs[j]) {
                 (Ordering::Less, Ordering::Greater) => Some(side),
                 (Ordering::Greater, Ordering::Less) => Some(HalfSpace {
                     normal: -side.normal,
@@ -206,36 +211,40 @@ impl<R: Real> Tetrahedron<R> {
     /// face that it leaves lies ahead.
     pub(super) fn ahead<'a>(
         &'a self,
-        sight: &'a Sight<R>,
+        functions: &'a EdgeFunctions<R>,
     ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
-        let leaving = faces(sight, Ordering::Greater).map(|face| self.inside(face, false));
-        leaving.chain(self.met(sight))
+        let leaving = faces(functions, Ordering::Greater).map(|face| self.inside(face, false));
+        leaving.chain(self.met(functions))
     }
 
     /// Whether the line meets the solid.
-    fn meets(&self, sight: &Sight<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
-        all(self.met(sight).map(|half_space| half_space.holds(line)))
+    fn meets(&self, functions: &EdgeFunctions<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
+        all(self.met(functions).map(|half_space| half_space.holds(line)))
     }
 
     /// Two faces that lines of one direction enter, the lower first, and where they enter the lower
     /// one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
-        sight: &'a Sight<R>,
+        functions: &'a EdgeFunctions<R>,
     ) -> impl Iterator<Item = (usize, usize, HalfSpace<R>)> + 'a {
         EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
-            let both = sight.crossing[i].is_lt() && sight.crossing[j].is_lt();
-            both.then(|| (i, j, self.side(edge, sight)))
+            let both = functions.face_signs[i].is_lt() && functions.face_signs[j].is_lt();
+            both.then(|| (i, j, self.side(edge, functions)))
         })
     }
 
     /// The face that a line enters last, and so the solid; of several at once, the lowest. Every
     /// line enters one.
-    fn entered_face(&self, sight: &Sight<R>, line: &Line<R>) -> Result<usize, R::Doubt> {
-        let mut entering = faces(sight, Ordering::Less);
+    fn entered_face(
+        &self,
+        functions: &EdgeFunctions<R>,
+        line: &Line<R>,
+    ) -> Result<usize, R::Doubt> {
+        let mut entering = faces(functions, Ordering::Less);
         let mut last = entering.next().unwrap_or(0);
         for face in entering {
-            if !self.side(edge_of(last, face), sight).holds(line)? {
+            if !self.side(edge_of(last, face), functions).holds(line)? {
                 last = face;
             }
         }
@@ -245,14 +254,14 @@ impl<R: Real> Tetrahedron<R> {
     /// The first point of the whole line in the solid.
     pub(super) fn first_hit(
         &self,
-        sight: &Sight<R>,
+        functions: &EdgeFunctions<R>,
         line: &Line<R>,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
-        if !self.meets(sight, line)? {
+        if !self.meets(functions, line)? {
             return Ok(None);
         }
-        let face = self.entered_face(sight, line)?;
-        let depth = -self.outside(face, line.origin) / sight.speed[face];
+        let face = self.entered_face(functions, line)?;
+        let depth = -self.outside(face, line.origin) / functions.n_dot_d[face];
         Ok(Some(Hit {
             depth,
             point: line.at(depth),
@@ -264,18 +273,24 @@ impl<R: Real> Tetrahedron<R> {
 
     /// Whether the ray meets the solid at some t > 0: the line meets it, and every face that it
     /// leaves lies ahead.
-    pub(super) fn is_ahead(&self, sight: &Sight<R>, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        all(self.ahead(sight).map(|half_space| half_space.holds(ray)))
+    pub(super) fn is_ahead(
+        &self,
+        functions: &EdgeFunctions<R>,
+        ray: &Line<R>,
+    ) -> Result<bool, R::Doubt> {
+        all(self
+            .ahead(functions)
+            .map(|half_space| half_space.holds(ray)))
     }
 }
 
 /// The faces that lines cross in one way.
-fn faces<R>(sight: &Sight<R>, crossing: Ordering) -> impl Iterator<Item = usize> {
-    sight
-        .crossing
+fn faces<R>(functions: &EdgeFunctions<R>, face_signs: Ordering) -> impl Iterator<Item = usize> {
+    functions
+        .face_signs
         .into_iter()
         .enumerate()
-        .filter_map(move |(face, sign)| (sign == crossing).then_some(face))
+        .filter_map(move |(face, sign)| (sign == face_signs).then_some(face))
 }
 
 /// The place in [`EDGES`] of the edge that faces i < j share.

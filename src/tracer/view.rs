@@ -16,30 +16,32 @@ use super::frame::{Frame, looking, reflect};
 use super::line::{Hit, Line, Normal};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
-use super::tetrahedron::{Sight, Tetrahedron};
+use super::tetrahedron::{EdgeFunctions, Tetrahedron};
 use super::vector::Vector;
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Support};
 
 impl<R: Real> Frame<R> {
-    /// The signs that a view of this frame is made with.
-    pub(super) fn bearings<'f>(
+    /// The signs that a view of this frame needs.
+    pub(super) fn signs<'f>(
         &self,
         scene: &Scene,
         mirrored: bool,
         arena: &'f Bump,
-    ) -> Result<Bearings<'f>, R::Doubt> {
+    ) -> Result<ViewSigns<'f>, R::Doubt> {
         let mirror = self.mirror(scene).filter(|_| mirrored);
-        let crossings = (0..scene.tetrahedra().len())
-            .map(|index| self.tetrahedron(scene, index, mirror).crossing(&looking()));
+        let face_signs = (0..scene.tetrahedra().len()).map(|index| {
+            self.tetrahedron(scene, index, mirror)
+                .face_signs(&looking())
+        });
         let eye = looking::<R>().vector;
         let to_light = self.way_to_light(scene, mirrored).vector;
         let across = eye.cross(to_light);
         let beside = [across.x, across.y, across.z];
         let parallel = beside.map(|x| x.sign().map(Ordering::is_eq));
         let same_way = eye.dot(to_light).sign().map(Ordering::is_gt);
-        Ok(Bearings {
-            crossings: arena.alloc_slice_try_fill_iter(crossings)?,
+        Ok(ViewSigns {
+            face_signs: arena.alloc_slice_try_fill_iter(face_signs)?,
             halfway: if all(parallel.into_iter().chain([same_way]))? {
                 Halfway::None
             } else {
@@ -49,15 +51,15 @@ impl<R: Real> Frame<R> {
     }
 }
 
-/// For each face, whether an eye ray enters there (less), runs along it (equal) or leaves
-/// (greater).
-pub(super) type Crossing = [Ordering; 4];
+/// The sign of n·d for each face: an eye ray enters there (less), runs along the face (equal) or
+/// leaves there (greater).
+pub(super) type FaceSigns = [Ordering; 4];
 
-/// Signs that all pixels of a view share, and that any number can build on once they are decided.
+/// Signs that all pixels of a view share. Once decided, they serve every number.
 #[derive(Clone, Copy)]
-pub(super) struct Bearings<'f> {
-    /// How eye rays cross each tetrahedron.
-    crossings: &'f [Crossing],
+pub(super) struct ViewSigns<'f> {
+    /// The signs of each tetrahedron.
+    face_signs: &'f [FaceSigns],
     halfway: Halfway,
 }
 
@@ -72,8 +74,8 @@ enum Halfway {
     Given(Vector<DoubleDouble>),
 }
 
-impl Bearings<'_> {
-    /// The same, with h computed by `refine` if that of `frame` is hardly known.
+impl ViewSigns<'_> {
+    /// The same, with h computed by `refine` if `frame` computes it with too large an error.
     pub(super) fn refined(
         self,
         scene: &Scene,
@@ -95,26 +97,26 @@ impl Bearings<'_> {
                 }
             }
         };
-        Bearings { halfway, ..self }
+        ViewSigns { halfway, ..self }
     }
 }
 
-/// Those of a frame: of the scene itself, and in the mirror where there is one.
-pub(super) struct FrameBearings<'f> {
-    pub(super) direct: Bearings<'f>,
-    pub(super) mirrored: Option<Bearings<'f>>,
+/// The signs of a frame: of the scene itself, and of its mirror image if there is one.
+pub(super) struct FrameSigns<'f> {
+    pub(super) direct: ViewSigns<'f>,
+    pub(super) mirrored: Option<ViewSigns<'f>>,
 }
 
-impl<'f> FrameBearings<'f> {
-    /// `bearings` tells those of the scene itself (false) or in the mirror (true), where anything
-    /// `mirrors`.
+impl<'f> FrameSigns<'f> {
+    /// `signs` decides those of the scene itself (false) or of its mirror image (true). The latter
+    /// are needed if the surface `mirrors`.
     pub(super) fn decide<D>(
         mirrors: bool,
-        bearings: impl Fn(bool) -> Result<Bearings<'f>, D>,
+        signs: impl Fn(bool) -> Result<ViewSigns<'f>, D>,
     ) -> Result<Self, D> {
-        Ok(FrameBearings {
-            direct: bearings(false)?,
-            mirrored: if mirrors { Some(bearings(true)?) } else { None },
+        Ok(FrameSigns {
+            direct: signs(false)?,
+            mirrored: if mirrors { Some(signs(true)?) } else { None },
         })
     }
 }
@@ -131,8 +133,8 @@ pub(super) struct View<'f, R> {
 /// A tetrahedron, as rays from the eye and to the light meet it.
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
-    pub(super) from_eye: Sight<R>,
-    pub(super) to_light: Sight<R>,
+    pub(super) from_eye: EdgeFunctions<R>,
+    pub(super) to_light: EdgeFunctions<R>,
 }
 
 /// Which solids take part in a stage.
@@ -148,14 +150,14 @@ impl<'f, R: Real> View<'f, R> {
     pub(super) fn new(
         scene: &Scene,
         frame: &Frame<R>,
-        bearings: &Bearings<'_>,
+        signs: &ViewSigns<'_>,
         extents: ExtentsOfSolids<'f>,
         mirrored: bool,
         room: &impl Room<'f>,
     ) -> Self {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
         let to_light = frame.way_to_light(scene, mirrored);
-        let halfway = match bearings.halfway {
+        let halfway = match signs.halfway {
             Halfway::None => None,
             Halfway::Given(given) => {
                 let own = halfway(&looking(), &to_light);
@@ -177,14 +179,14 @@ impl<'f, R: Real> View<'f, R> {
                     radius: R::exact(sphere.radius) * frame.scale,
                     support,
                 });
-        let tetrahedra = bearings
-            .crossings
+        let tetrahedra = signs
+            .face_signs
             .iter()
             .enumerate()
-            .map(|(index, &crossing)| {
+            .map(|(index, &face_signs)| {
                 let solid = frame.tetrahedron(scene, index, mirror);
-                let from_eye = solid.sight(&looking(), crossing);
-                let along_light = solid.sight_of_light(&to_light);
+                let from_eye = solid.edge_functions(&looking(), face_signs);
+                let along_light = solid.edge_functions_to_light(&to_light);
                 TetrahedronInView {
                     solid,
                     from_eye,

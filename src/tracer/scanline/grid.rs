@@ -93,7 +93,7 @@ pub(crate) fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
 
 /// Whole numbers of columns, below 2³².
 #[inline(always)]
-pub(crate) fn put_columns<S: Simd>(places: S::f64s, columns: &mut [u32]) {
+pub(crate) fn store_columns<S: Simd>(places: S::f64s, columns: &mut [u32]) {
     // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper
     // half.
     let shifted = places + f64::from_bits((1023 + 52) << 52);

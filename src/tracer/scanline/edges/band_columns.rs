@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::scanline::grid::{ROWS, put_columns};
+use crate::tracer::scanline::grid::{ROWS, store_columns};
 
 /// A bit for each row of a band.
 const ALL: u64 = (1 << ROWS) - 1;
@@ -30,7 +30,7 @@ impl BandColumns {
     /// Stores the columns of as many rows as there are lanes, from row `first` of the band on. Rows
     /// that are not `is_crossed` have none.
     #[inline(always)]
-    pub(crate) fn put<S: Simd>(
+    pub(crate) fn store<S: Simd>(
         &mut self,
         simd: S,
         first: usize,
@@ -42,14 +42,14 @@ impl BandColumns {
         let is_filled = is_crossed & from.simd_lt(to);
         let from = is_filled.select(from, S::f64s::splat(simd, 0.0));
         let to = is_filled.select(to, from);
-        put_columns::<S>(from, &mut self.possible[0][first..]);
-        put_columns::<S>(to, &mut self.possible[1][first..]);
+        store_columns::<S>(from, &mut self.possible[0][first..]);
+        store_columns::<S>(to, &mut self.possible[1][first..]);
         let [begin, end] = certain;
         let is_some = is_filled & begin.simd_lt(end);
         let begin = is_some.select(begin, from);
         let end = is_some.select(end, from);
-        put_columns::<S>(begin, &mut self.certain[0][first..]);
-        put_columns::<S>(end, &mut self.certain[1][first..]);
+        store_columns::<S>(begin, &mut self.certain[0][first..]);
+        store_columns::<S>(end, &mut self.certain[1][first..]);
         self.filled |= is_filled.to_bitmask() << first;
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }

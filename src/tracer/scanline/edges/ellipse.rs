@@ -8,7 +8,7 @@ use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::vector::Vector;
 
 /// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that are linear
@@ -113,21 +113,21 @@ impl Ellipse {
         // A linear function of Y in f64: its coefficients' errors, and two roundings.
         let error = |(a, b): (Bounded, Bounded)| {
             (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
-                * MORE
+                * INFLATION
         };
-        let radius = squared_radius.at_most().max(0.0).sqrt() * MORE;
+        let radius = squared_radius.at_most().max(0.0).sqrt() * INFLATION;
         // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one
         // rounding. The product rounds too.
         let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
         let shift = zero.error() + U * away;
         let m_error =
-            (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * MORE;
+            (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * INFLATION;
         // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the
         // error says, and farther away because the slope is known to a quarter. Otherwise
         // nothing is known.
         let known = slope.error() < slope.value().abs() / 4.0;
         let limit = if known {
-            (radius + m_error) * MORE
+            (radius + m_error) * INFLATION
         } else {
             f64::INFINITY
         };
@@ -135,11 +135,11 @@ impl Ellipse {
         let chord_error = (squared_radius.error()
             + (2.0 * limit + m_error) * m_error
             + 2.0 * U * (limit * limit + squared_radius.value().abs()))
-            * MORE;
+            * INFLATION;
         // The chord's half is at most the radius. Its root, the sum with the middle, a third of it
         // and the sum with N/2 round by less than u of |middle| + radius + N each.
         let middle = center.0.value().abs() + center.1.value().abs() * reach;
-        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * MORE;
+        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * INFLATION;
         let all = [
             center.0.value(),
             center.1.value(),

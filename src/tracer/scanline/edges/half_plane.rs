@@ -7,7 +7,7 @@ use crate::number::{Bounded, Real};
 use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::tetrahedron::HalfSpace;
 
 /// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
@@ -74,14 +74,14 @@ impl HalfPlane {
             per_row: -(row.value() * inverse),
             slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
                 + 16.0 * U * 3.0 * f64::from(grid.size))
-                * MORE,
+                * INFLATION,
         };
         let is_known = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
         // The sum rounds by less than 2u of its terms twice.
-        let error = (carried + 4.0 * U * magnitude) * MORE;
+        let error = (carried + 4.0 * U * magnitude) * INFLATION;
         let crossing = match inverse > 0.0 {
             _ if !is_known || across <= error => Crossing::Never {
-                error: (error + across) * MORE,
+                error: (error + across) * INFLATION,
             },
             true => Crossing::Right(root),
             false => Crossing::Left(root),
@@ -127,7 +127,7 @@ impl HalfPlane {
             Crossing::Never { .. } => return self.decide(x, y),
         };
         let beyond = grid.half + x / 3.0 - (y * root.per_row + root.at);
-        if beyond.abs() > root.slack * MORE + U * (beyond.abs() + f64::from(grid.size)) {
+        if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
             Some((beyond > 0.0) == rightward)
         } else {
             self.decide(x, y)

@@ -105,7 +105,7 @@ impl<'f> Region<'f> {
                 grid.ceil_all::<S>(certain[0]),
                 grid.count_all::<S>(certain[1]),
             ];
-            band.put(simd, first, is_crossed, possible, certain);
+            band.store(simd, first, is_crossed, possible, certain);
         }
         band
     }

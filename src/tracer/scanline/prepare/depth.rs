@@ -6,7 +6,7 @@ use crate::tracer::frame::looking;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
@@ -94,13 +94,13 @@ impl Depth<'_> {
                 let q = magnitudes(rectangle.x.map(|x| x - center_x));
                 let squared = |end: usize| (squared_radius - m[end] * m[end]) - q[end] * q[end];
                 let min_s = (squared(1) - squared_error).max(0.0).sqrt();
-                let max_s = (squared(0) + squared_error).max(0.0).sqrt() * MORE;
+                let max_s = (squared(0) + squared_error).max(0.0).sqrt() * INFLATION;
                 // 1/√109, from below and from above.
                 const ROOT: f64 = 0.095_782_628_522_115_14;
                 let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / 109.0);
                 bounds(
-                    low - max_s * ROOT * MORE - error,
-                    high - min_s * ROOT / MORE / MORE + error,
+                    low - max_s * ROOT * INFLATION - error,
+                    high - min_s * ROOT / INFLATION / INFLATION + error,
                 )
             }
             Depth::FrontFaces(front_faces) => {
@@ -138,16 +138,16 @@ impl Depth<'_> {
         let constant = ten * (Bounded::exact(grid.reach) - center.z) - three * center.y;
         let magnitude = constant.value().abs() + 3.0 * grid.reach;
         let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.reach);
-        let radius = outline.squared_radius.max(0.0).sqrt() * MORE;
+        let radius = outline.squared_radius.max(0.0).sqrt() * INFLATION;
         let reach = radius + q;
         Depth::Sphere {
             m: outline.m,
             squared_radius: outline.squared_radius,
             center_x: center.x.value(),
             g: [constant.value(), 3.0],
-            error: (constant.error() + 8.0 * U * (magnitude + radius)) * MORE,
+            error: (constant.error() + 8.0 * U * (magnitude + radius)) * INFLATION,
             squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
-                * MORE,
+                * INFLATION,
             support,
         }
     }
@@ -196,7 +196,7 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
         constant,
         column,
         row,
-        error: (errors + 8.0 * U * magnitudes) * MORE,
+        error: (errors + 8.0 * U * magnitudes) * INFLATION,
         support: face.border,
     };
     (plane, depth)

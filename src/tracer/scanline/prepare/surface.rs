@@ -16,7 +16,7 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::shadows::shadows_on;
 use crate::tracer::scanline::prepare::solids::PreparedSolids;
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
 
@@ -77,7 +77,7 @@ impl<'f> PreparedSurface<'f> {
         let depth = LevelDepth {
             constant: -height.value(),
             per_row: third.value(),
-            error: (height.error() + 8.0 * U * magnitude) * MORE,
+            error: (height.error() + 8.0 * U * magnitude) * INFLATION,
         };
         let rows = surface.extent.rows(grid.size);
         let outline = Region::new(parts.arena.alloc(sides), None, grid).within(rows);

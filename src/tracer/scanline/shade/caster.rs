@@ -1,7 +1,7 @@
 //! What casts a shadow on a sphere.
 
 use crate::number::Bounded;
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::scanline::shade::sphere::{HitBox, LinearForm};
 
 /// A solid or the surface, which may stand between a pixel of a sphere and the light.
@@ -63,7 +63,7 @@ impl ShadowCylinder {
             .iter()
             .map(|form| (2.0 * form.magnitude + form.error) * form.error)
             .sum();
-        let error = (limit.error() + carried + 8.0 * U * (magnitudes + limit.value())) * MORE;
+        let error = (limit.error() + carried + 8.0 * U * (magnitudes + limit.value())) * INFLATION;
         ShadowCylinder {
             before,
             moment,

@@ -16,7 +16,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, places, put_columns};
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, places, store_columns};
 use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
@@ -178,12 +178,12 @@ impl SphereBand {
             };
             let [innermost, inner, outermost] = sphere.min_squares;
             let known = rows.chord(outermost);
-            put::<S>(known, &mut self.known, lane);
-            put::<S>(rows.chord(innermost), &mut self.zones[0], lane);
-            put::<S>(rows.chord(inner), &mut self.zones[1], lane);
+            store::<S>(known, &mut self.known, lane);
+            store::<S>(rows.chord(innermost), &mut self.zones[0], lane);
+            store::<S>(rows.chord(inner), &mut self.zones[1], lane);
             if sphere.shadows {
                 let (inside, settled) = rows.arc(&sphere.light, 0.0, known);
-                put::<S>(inside, &mut self.facing.inside, lane);
+                store::<S>(inside, &mut self.facing.inside, lane);
                 self.facing.settled |= settled.to_bitmask() << lane;
             }
             if let Some(highlight) = &sphere.highlight {
@@ -199,7 +199,7 @@ impl SphereBand {
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
                     let bright = select::<S>(is_near, bright, none);
-                    put::<S>(bright, &mut self.bright, lane);
+                    store::<S>(bright, &mut self.bright, lane);
                 }
             }
         }
@@ -225,9 +225,9 @@ fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> E
 }
 
 #[inline(always)]
-fn put<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
-    put_columns::<S>(ends[0], &mut intervals[0][lane..]);
-    put_columns::<S>(ends[1], &mut intervals[1][lane..]);
+fn store<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
+    store_columns::<S>(ends[0], &mut intervals[0][lane..]);
+    store_columns::<S>(ends[1], &mut intervals[1][lane..]);
 }
 
 // No closures below: see `shade/run.rs`.

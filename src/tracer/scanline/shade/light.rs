@@ -1,7 +1,7 @@
 //! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: the same for all spheres.
 
 use crate::number::{Bounded, Real};
-use crate::tracer::scanline::rounding::MORE;
+use crate::tracer::scanline::rounding::INFLATION;
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
 
@@ -90,7 +90,7 @@ impl Lighting {
                 threshold,
                 limit: -libm::expm1(CUT / n),
                 // 1 − n·h = |n − h|²/2.
-                max_distance: (2.0 * (1.0 - threshold)).sqrt() * MORE,
+                max_distance: (2.0 * (1.0 - threshold)).sqrt() * INFLATION,
                 steepest: 1.0 / n.sqrt(),
                 smallest_power: libm::exp2(1.0 - n),
             },

@@ -136,7 +136,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
                 lit_high = row.lit(places[1], now[1], &ambient, (zone, bright >> lanes));
             }
             let (rounded, doubts) = P::round(lit_low, lit_high);
-            put::<S>(samples, &rounded);
+            store::<S>(samples, &rounded);
             unknown = (unknown | doubts) & !in_shadow;
             run.darken(first..first + here, in_shadow);
         }
@@ -182,7 +182,7 @@ fn shadowed<S: Simd, P: Policy<S>>(
 
 /// Writes as many samples as there are, or as three vectors hold.
 #[inline(always)]
-fn put<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
+fn store<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
     let width = S::f32s::LEN;
     if samples.len() == 3 * width {
         for (i, vector) in vectors.iter().enumerate() {

@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
-use crate::tracer::scanline::rounding::{MORE, U};
+use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::scanline::shade::light::{Highlight, Lighting};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
@@ -61,8 +61,8 @@ impl LinearForm {
         let magnitude = constant.value().abs();
         LinearForm {
             constant: constant.value(),
-            error: self.error + (constant.error() + 8.0 * U * magnitude) * MORE,
-            magnitude: self.magnitude + magnitude * MORE,
+            error: self.error + (constant.error() + 8.0 * U * magnitude) * INFLATION,
+            magnitude: self.magnitude + magnitude * INFLATION,
             ..self
         }
     }
@@ -135,7 +135,7 @@ impl HitBounds {
             m: factors[1].value(),
             s: factors[2].value(),
             error: self.error(&factors, self.s_errors[ZONES - 1]),
-            magnitude: self.magnitude(&factors) * MORE,
+            magnitude: self.magnitude(&factors) * INFLATION,
             is_concave: factors[2].sign().ok().map(Ordering::is_ge),
         }
     }
@@ -155,7 +155,7 @@ impl HitBounds {
             })
             .sum();
         let rounded = 8.0 * U * self.magnitude(factors);
-        (carried + rounded) * MORE
+        (carried + rounded) * INFLATION
     }
 
     /// The highlight of a sphere of this radius, where `h` is that of the view.
@@ -180,11 +180,11 @@ impl HitBounds {
                 part(self.m_error, h[1]),
                 part(s_error, h[2]),
             ];
-            let error = (q + m + s) * MORE;
+            let error = (q + m + s) * INFLATION;
             // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
             // products, by u of what they give.
-            let constant = n * (error * steepest / 2.0 + error * error + 2.0 * U) * MORE;
-            let slope = n * (error / steepest + 16.0 * U) * MORE;
+            let constant = n * (error * steepest / 2.0 + error * error + 2.0 * U) * INFLATION;
+            let slope = n * (error / steepest + 16.0 * U) * INFLATION;
             let is_small = constant + slope * highlight.limit < 1.0 / 64.0;
             if is_small {
                 [constant, slope]
@@ -197,7 +197,7 @@ impl HitBounds {
             halfway: h.map(Bounded::value),
             errors,
             smallest_power: highlight.smallest_power,
-            max_distance: (highlight.max_distance + part(self.m_error, h[1])) * MORE,
+            max_distance: (highlight.max_distance + part(self.m_error, h[1])) * INFLATION,
         }
     }
 }
@@ -253,16 +253,16 @@ impl RowSphere {
         color: Vector<Bounded>,
         shadows: bool,
     ) -> RowSphere {
-        let radius = sphere.radius.at_most() * MORE;
+        let radius = sphere.radius.at_most() * INFLATION;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
-        let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * MORE;
+        let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * INFLATION;
         // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference
         // round.
         let squared =
             outline.chord_error + (2.0 * radius + q_error) * q_error + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
         let s_errors =
-            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * MORE);
+            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * INFLATION);
         let bounds = HitBounds {
             radius,
             q_error,
@@ -297,7 +297,7 @@ impl RowSphere {
                 };
                 // |n·l| ≤ 1, but for its error; two products and two sums round.
                 let diffuse = d.error() * (1.0 + light) + d.value().abs() * light;
-                (a.error() + diffuse + specular + 8.0 * U * magnitudes) * MORE
+                (a.error() + diffuse + specular + 8.0 * U * magnitudes) * INFLATION
             };
             for (all, light) in errors.iter_mut().zip(light_errors) {
                 *all = error(light).max(*all);
@@ -317,7 +317,7 @@ impl RowSphere {
             squared_radius: outline.squared_radius,
             m: outline.m,
             min_squares: ZONE_DIVISORS
-                .map(|divisor| (radius / divisor) * (radius / divisor) * MORE),
+                .map(|divisor| (radius / divisor) * (radius / divisor) * INFLATION),
             bounds,
             center: sphere.center,
             light,

@@ -102,10 +102,10 @@ pub(crate) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
     let last = samples.len() - width;
-    put::<S, V>(simd, samples, 0, paint);
+    store::<S, V>(simd, samples, 0, paint);
     if last <= 4 * width {
         for place in [width, 2 * width, 3 * width, last] {
-            put::<S, V>(simd, samples, place.min(last), paint);
+            store::<S, V>(simd, samples, place.min(last), paint);
         }
         return;
     }
@@ -121,13 +121,13 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
         three.store_slice(&mut block[2 * width..]);
     }
     for back in [2 * width, width, 0] {
-        put::<S, V>(simd, samples, last - back, paint);
+        store::<S, V>(simd, samples, last - back, paint);
     }
 }
 
-/// A vector of samples, from one on.
+/// Stores a vector of samples at `place`.
 #[inline(always)]
-fn put<S: Simd, V: SimdFloat<S, Element = f32>>(
+fn store<S: Simd, V: SimdFloat<S, Element = f32>>(
     simd: S,
     samples: &mut [f32],
     place: usize,

@@ -66,28 +66,28 @@ impl<'r> Row<'r> {
         match self.history.take() {
             Some(history) => {
                 let place = (self.number - self.first) as usize;
-                let write = |columns| self.put(columns, paint);
+                let write = |columns| self.extend_pending(columns, paint);
                 history[place].fill(columns, paint.bits(), write);
                 self.history = Some(history);
             }
-            None => self.put(columns, paint),
+            None => self.extend_pending(columns, paint),
         }
     }
 
-    fn put(&mut self, columns: Columns, paint: &'r Paint) {
+    fn extend_pending(&mut self, columns: Columns, paint: &'r Paint) {
         let pixels = self.pixels(columns);
         match &mut self.pending {
             Some((pending, same)) if pending.end == pixels.start && same.bits() == paint.bits() => {
                 pending.end = pixels.end;
             }
             _ => {
-                self.put_pending();
+                self.write_pending();
                 self.pending = Some((pixels, paint));
             }
         }
     }
 
-    fn put_pending(&mut self) {
+    fn write_pending(&mut self) {
         if let Some((pixels, paint)) = self.pending.take() {
             let samples = &mut self.samples[3 * pixels.start..3 * pixels.end];
             dispatch!(self.level, simd => paint::fill(simd, samples, paint));
@@ -198,7 +198,7 @@ impl<'r> Row<'r> {
 
     /// All rows are.
     pub(crate) fn finish_all(mut self) -> InDoubt {
-        self.put_pending();
+        self.write_pending();
         self.in_doubt
     }
 
