@@ -1,4 +1,4 @@
-//! Where a solid can be seen at all: most pixels need not be tested against most solids.
+//! Bounding rectangles on the screen: most pixels need not be tested against most solids.
 
 use std::ops::RangeInclusive;
 
@@ -31,21 +31,22 @@ pub(super) struct Extents<'f> {
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [Extent],
-    /// For each solid the least that 109 t − 3 Y is where an eye ray meets it, from below: t is the
-    /// ray's parameter, Y that of its pixel.
+    /// For each solid, a lower bound on 109 t − 3 Y where an eye ray meets it: t is the ray's
+    /// parameter, Y the coordinate of the pixel's row.
     nearest: &'f [f64],
     /// N/2.
     half: f64,
     /// Pixels along a side of a tile.
     side: u32,
-    across: u32,
-    /// Where each tile's solids begin, and where the last one's end.
+    tiles_per_row: u32,
+    /// For each tile, the index of its first solid in `solids`; then the length of `solids`.
     starts: &'f [u32],
     solids: &'f [u16],
 }
 
-/// Tiles side by side, where there are so many solids that a pixel is not asked about all of them.
+/// Tiles in a row, if there are more than [`FEW`] solids.
 const TILES: u32 = 32;
+/// So many solids share one tile.
 const FEW: usize = 16;
 
 impl<'f> ExtentsOfSolids<'f> {
@@ -54,7 +55,7 @@ impl<'f> ExtentsOfSolids<'f> {
         nearest: &[],
         half: 0.0,
         side: 1,
-        across: 1,
+        tiles_per_row: 1,
         starts: &[],
         solids: &[],
     };
@@ -62,7 +63,7 @@ impl<'f> ExtentsOfSolids<'f> {
     fn new(all: &'f [Extent], nearest: &'f [f64], size: u32, arena: &'f Bump) -> Self {
         let tiles = if all.len() > FEW { TILES } else { 1 };
         let side = size.div_ceil(tiles);
-        let across = size.div_ceil(side);
+        let tiles_per_row = size.div_ceil(side);
         let reached = |extent: &Extent| {
             let tiles = |(from, to): (u32, u32)| {
                 if from < to {
@@ -75,10 +76,10 @@ impl<'f> ExtentsOfSolids<'f> {
             rows.flat_map(move |row| {
                 columns
                     .clone()
-                    .map(move |column| (row * across + column) as usize)
+                    .map(move |column| (row * tiles_per_row + column) as usize)
             })
         };
-        let starts = arena.alloc_slice_fill_copy((across * across) as usize + 1, 0);
+        let starts = arena.alloc_slice_fill_copy((tiles_per_row * tiles_per_row) as usize + 1, 0);
         for tile in all.iter().flat_map(reached) {
             starts[tile] += 1;
         }
@@ -102,14 +103,14 @@ impl<'f> ExtentsOfSolids<'f> {
             nearest,
             half: f64::from(size) / 2.0,
             side,
-            across,
+            tiles_per_row,
             starts,
             solids,
         }
     }
 
     /// Y of a row.
-    pub(super) fn place(&self, row: u32) -> f64 {
+    pub(super) fn y_of(&self, row: u32) -> f64 {
         3.0 * (f64::from(row) - self.half)
     }
 
@@ -118,9 +119,9 @@ impl<'f> ExtentsOfSolids<'f> {
         &self.all[solid]
     }
 
-    /// A parameter before which the eye ray of a pixel does not meet a solid; it does not get less
-    /// from a solid to the next that [`ExtentsOfSolids::at`] tells.
-    pub(super) fn least_depth(&self, solid: usize, y: f64) -> f64 {
+    /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of the
+    /// solids of [`ExtentsOfSolids::at`] are in increasing order.
+    pub(super) fn min_depth(&self, solid: usize, y: f64) -> f64 {
         let depth = (self.nearest[solid] + 3.0 * y) / 109.0;
         // 3 Y is a whole number of halves; the sum and the quotient round by u each.
         depth - 2.0 * f64::EPSILON * depth.abs()
@@ -128,7 +129,7 @@ impl<'f> ExtentsOfSolids<'f> {
 
     /// The solids that can be seen in a pixel, the nearest first.
     pub(super) fn at(&self, (column, row): (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
-        let tile = (row / self.side * self.across + column / self.side) as usize;
+        let tile = (row / self.side * self.tiles_per_row + column / self.side) as usize;
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
         let (all, solids) = (self.all, &self.solids[range]);
         let solids = solids.iter().map(|solid| usize::from(*solid));
@@ -152,7 +153,7 @@ impl Extent {
         within(&self.columns, size)
     }
 
-    /// Whether any pixel is in both.
+    /// Whether both extents have a pixel in common.
     pub(super) fn meets(&self, other: &Extent) -> bool {
         let meet = |a: &RangeInclusive<i64>, b: &RangeInclusive<i64>| {
             a.start() <= b.end() && b.start() <= a.end()
@@ -160,7 +161,7 @@ impl Extent {
         meet(&self.columns, &other.columns) && meet(&self.rows, &other.rows)
     }
 
-    /// How many pixels of a picture are in it.
+    /// The number of its pixels in a picture.
     pub(super) fn area(&self, size: u32) -> u64 {
         let length = |(from, to): (u32, u32)| u64::from(to.saturating_sub(from));
         length(self.columns(size)) * length(self.rows(size))
@@ -220,18 +221,18 @@ impl<'f> Extents<'f> {
         arena: &'f Bump,
     ) -> Self {
         let solids = |mirror: Option<Bounded>| {
-            let place = |point| reflect(frame.place(point), mirror);
+            let point = |p| reflect(frame.point(p), mirror);
             // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
             let stretch = Bounded::exact(109.0).sqrt() / Bounded::exact(10.0);
             let spheres = scene.spheres().iter().map(|sphere| {
                 let radius = Bounded::exact(sphere.radius) * frame.scale;
-                Extent::of(&[place(sphere.center)], radius, radius * stretch, size)
+                Extent::of(&[point(sphere.center)], radius, radius * stretch, size)
             });
             let none = Bounded::exact(0.0);
             let tetrahedra = scene
                 .tetrahedra()
                 .iter()
-                .map(|t| Extent::of(&t.vertices.map(place), none, none, size));
+                .map(|t| Extent::of(&t.vertices.map(point), none, none, size));
             let all = collect(arena, spheres.chain(tetrahedra));
             // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
             let [three, ten] = [3.0, 10.0].map(Bounded::exact);
@@ -239,11 +240,11 @@ impl<'f> Extents<'f> {
             let screen = Bounded::exact(15.0 * f64::from(size));
             let root = Bounded::exact(109.0).sqrt();
             let spheres = scene.spheres().iter().map(|sphere| {
-                let reach = Bounded::exact(sphere.radius) * frame.scale * root;
-                (screen - toward(place(sphere.center)) - reach).at_least()
+                let radius = Bounded::exact(sphere.radius) * frame.scale * root;
+                (screen - toward(point(sphere.center)) - radius).at_least()
             });
             let tetrahedra = scene.tetrahedra().iter().map(|t| {
-                let vertices = t.vertices.map(|vertex| screen - toward(place(vertex)));
+                let vertices = t.vertices.map(|vertex| screen - toward(point(vertex)));
                 vertices
                     .map(Bounded::at_least)
                     .into_iter()
@@ -254,7 +255,7 @@ impl<'f> Extents<'f> {
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
-                frame.place(glam::DVec3::new(
+                frame.point(glam::DVec3::new(
                     x * surface.half_width,
                     surface.height,
                     z * surface.half_width,

@@ -4,7 +4,7 @@
 //!
 //! The scene is turned by α instead of the eye, and measured in thirds of a pixel from the
 //! picture's centre: x right, y up, z toward the eye, a scene's length 1 being 3N/2. There the
-//! pixel (x, y) has its place on the screen at e = 3 (x − N/2, y − N/2, N/2), the eye looks along
+//! pixel (x, y) lies on the screen at e = 3 (x − N/2, y − N/2, N/2), the eye looks along
 //! −(0, 3, 10), which is −10 w, and a ray reaches the surface at t = (y − N/2) − (N/2) · height.
 //! Directions need no unit length, so nothing is rounded that need not be: pixels and eye
 //! rays are small whole or half numbers, and at α = 0 so is a scene of short binary fractions.
@@ -45,6 +45,7 @@ impl<R: Real> Frame<R> {
             .map(|surface| R::exact(surface.height) * self.scale)
     }
 
+    /// A direction of the scene in view space, unscaled.
     pub(super) fn turn(&self, v: DVec3) -> Vector<R> {
         let v = Vector::<R>::exact(v);
         Vector::new(
@@ -54,7 +55,8 @@ impl<R: Real> Frame<R> {
         )
     }
 
-    pub(super) fn place(&self, point: DVec3) -> Vector<R> {
+    /// A point of the scene in view space.
+    pub(super) fn point(&self, point: DVec3) -> Vector<R> {
         self.turn(point) * self.scale
     }
 
@@ -80,7 +82,7 @@ impl<R: Real> Frame<R> {
         let (tetrahedron, facts) = (&scene.tetrahedra()[index], scene.facts());
         let vertices = tetrahedron
             .vertices
-            .map(|vertex| reflect(self.place(vertex), mirror));
+            .map(|vertex| reflect(self.point(vertex), mirror));
         // A reflection turns a right hand into a left one.
         let right_handed = facts.right_handed[index] != mirror.is_some();
         Tetrahedron::new(
@@ -91,8 +93,8 @@ impl<R: Real> Frame<R> {
         )
     }
 
-    /// The way to the light, reflected for the mirror.
-    pub(super) fn way_to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
+    /// The direction to the light, reflected for the mirror.
+    pub(super) fn direction_to_light(&self, scene: &Scene, mirrored: bool) -> Direction<R> {
         let direction = scene.light().scaled_direction();
         let turned = -self.turn(direction);
         Direction {
@@ -108,7 +110,7 @@ impl<R: Real> Frame<R> {
 
     /// h, where v + l is not 0.
     pub(super) fn halfway(&self, scene: &Scene, mirrored: bool) -> Vector<R> {
-        halfway(&looking(), &self.way_to_light(scene, mirrored))
+        halfway(&looking(), &self.direction_to_light(scene, mirrored))
     }
 }
 
@@ -120,7 +122,7 @@ pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R>
     }
 }
 
-/// The way every eye ray goes: −10 w, of length √109.
+/// The direction of every eye ray: −10 w, of length √109.
 pub(super) fn looking<R: Real>() -> Direction<R> {
     let vector = Vector::new(R::exact(0.0), R::exact(-3.0), R::exact(-10.0));
     Direction {

@@ -16,7 +16,7 @@ pub(super) struct Line<R> {
     pub(super) leaves: Option<Support>,
 }
 
-/// The way a line goes, of any length, with what every intersection along it shares.
+/// The direction of a line, of any length but 0, with its squared length.
 #[derive(Clone, Copy)]
 pub(super) struct Direction<R> {
     pub(super) vector: Vector<R>,

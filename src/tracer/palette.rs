@@ -7,9 +7,9 @@ use bumpalo::Bump;
 use super::decision::{Decision, Seen};
 use crate::scene::Scene;
 
-/// A place for the samples of every decision that tells them: of all but a sphere in the light.
+/// A slot for the samples of each decision, except those of spheres in the light.
 pub(super) struct Palette<'f> {
-    places: &'f [OnceLock<[f32; 3]>],
+    slots: &'f [OnceLock<[f32; 3]>],
     solids: usize,
 }
 
@@ -25,23 +25,23 @@ impl<'f> Palette<'f> {
         let solids = scene.spheres().len() + scene.tetrahedra().len();
         let count = WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID;
         Palette {
-            places: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),
+            slots: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),
             solids,
         }
     }
 
-    /// The place of a decision.
+    /// The slot of a decision; of a sphere in the light, that of its unshaded colour.
     pub(super) fn get(&self, decision: Decision) -> &OnceLock<[f32; 3]> {
         let of_solid = |mirrored: usize, seen: Seen| {
-            let place = match seen.face {
+            let slot = match seen.face {
                 _ if seen.in_shadow => 5,
                 None => 4,
                 Some(face) => usize::from(face),
             };
             let solid = mirrored * self.solids + usize::from(seen.solid);
-            WITHOUT_SOLIDS + solid * OF_A_SOLID + place
+            WITHOUT_SOLIDS + solid * OF_A_SOLID + slot
         };
-        &self.places[match decision {
+        &self.slots[match decision {
             Decision::Quadrant(number) => usize::from(number),
             Decision::Background => 4,
             Decision::Surface => 5,

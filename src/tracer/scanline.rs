@@ -24,7 +24,7 @@
 //!   on a plane or of a mirror image is a straight line or an ellipse, and where it crosses a row
 //!   is a root, known within a bound. So the *possible* columns of a region and its *certain* ones
 //!   may differ: in the columns between them first the region is evaluated, and where that does
-//!   not tell, the whole pixel. Shadows on spheres are no edges: `shade/` finds them.
+//!   not tell, the whole pixel. Shadows on spheres have no edges: `shade/` finds them.
 //! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the
 //!   next row, where mostly nothing but places has changed.
 //! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is
@@ -188,7 +188,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let mut traced = 0;
         for number in rows {
             row.number = number;
-            row.y = self.frame.grid.place(number);
+            row.y = self.frame.grid.coordinate(number);
             match &self.frame.quadrants {
                 Some(quadrants) => self.trace_quadrants(&mut row, quadrants),
                 None => self.trace_row(&mut row, scratch),

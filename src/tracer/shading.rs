@@ -109,7 +109,7 @@ impl<R: Real> Shading<R> {
     }
 }
 
-/// h = (v + l)/|v + l|, where `looking` is the way the eye's rays go, the opposite of v; v + l is
+/// h = (v + l)/|v + l|, where `looking` is the direction of eye rays, the opposite of v; v + l is
 /// not 0.
 pub(super) fn halfway<R: Real>(looking: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
     let v = -looking.vector.divided_by(looking.squared_length.sqrt());

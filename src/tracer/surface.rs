@@ -27,10 +27,10 @@ impl<R: Real> Surface<R> {
         ]
     }
 
-    /// The four numbers that are not negative in the square, each as a constant and what a column
-    /// and a row add to it, for points `origin` + X · `per_column` + Y · `per_row` of its
-    /// plane. Points and square may be scaled by one positive factor, which is in
-    /// `half` as well, half the length of a side.
+    /// Four linear functions of X and Y that are not negative in the square, each as a constant and
+    /// the coefficients of X and Y, for the points `origin` + X · `per_column` + Y · `per_row` of its
+    /// plane. `half` is half the length of a side. Points and `half` may be scaled by one positive
+    /// factor.
     pub(super) fn sides(
         &self,
         [origin, per_column, per_row]: [Vector<R>; 3],
@@ -52,21 +52,20 @@ impl<R: Real> Surface<R> {
         self.contains_scaled(point, self.half_width)
     }
 
-    /// The same with point and square scaled by one positive factor, which is in `half_width`
-    /// already.
+    /// The same for a point and a square that are both scaled by one positive factor.
     fn contains_scaled(&self, point: Vector<R>, half_width: R) -> Result<bool, R::Doubt> {
-        // Each side by itself: on the middle line a coordinate's sign would be in doubt, and nobody
-        // asks for it.
+        // Both sides are tested instead of |coordinate|: on the middle line the coordinate's sign
+        // may be in doubt.
         let [a, b] = self.along_sides(point);
         all([a, -a, b, -b].map(|coordinate| Ok((half_width - coordinate).sign()?.is_ge())))
     }
 
-    /// The half-spaces that every point is in which the square keeps from the light: those whose
-    /// ray toward the light, which `to_light` is the way to and `climb` the sign of its rise, meets
-    /// it. They follow from [`Surface::is_ahead`], whose conditions are linear in the ray's origin.
+    /// The half-spaces whose intersection holds the square's shadow: all points whose ray in the
+    /// direction `to_light` meets the square. `climb` is the sign of the rise of that ray. The
+    /// half-spaces follow from [`Surface::is_ahead`], whose conditions are linear in the origin.
     ///
-    /// Where `climb` is not 0 they hold no other points. A level ray meets the square only from
-    /// points of its plane, and not from all of these.
+    /// Where `climb` is not 0, the intersection is the shadow. A level ray meets the square from
+    /// some points of its plane only, which the half-spaces do not tell from the others.
     pub(super) fn shadow(
         &self,
         to_light: Vector<R>,
@@ -87,12 +86,12 @@ impl<R: Real> Surface<R> {
             Ordering::Less => ([Some(before(up, false)), None], Some(-to_light)),
         };
         let sides = sides.into_iter().flat_map(move |l| {
-            // Across: the square's sides are where these vary by `half_width` from its middle.
-            let across = [
+            // The unit vectors along the sides.
+            let along = [
                 Vector::new(self.cos, zero, self.sin),
                 Vector::new(-self.sin, zero, self.cos),
             ];
-            across
+            along
                 .into_iter()
                 .flat_map(|side| [side, -side])
                 .map(move |side| HalfSpace {
@@ -142,8 +141,8 @@ impl<R: Real> Surface<R> {
         let origin = self.along_sides(ray.origin);
         let direction = self.along_sides(ray.direction.vector);
         let (mut enter, mut leave): (Option<R>, Option<R>) = (None, None);
-        for (start, speed) in origin.into_iter().zip(direction) {
-            let heading = speed.sign()?;
+        for (start, slope) in origin.into_iter().zip(direction) {
+            let heading = slope.sign()?;
             if heading.is_eq() {
                 if (self.half_width - start).sign()?.is_lt()
                     || (self.half_width + start).sign()?.is_lt()
@@ -157,7 +156,7 @@ impl<R: Real> Surface<R> {
             } else {
                 (self.half_width - start, -self.half_width - start)
             };
-            let (near, far) = (near / speed, far / speed);
+            let (near, far) = (near / slope, far / slope);
             enter = match enter {
                 Some(other) if (other - near).sign()?.is_ge() => Some(other),
                 _ => Some(near),

@@ -284,7 +284,7 @@ impl<R: Real> Tetrahedron<R> {
     }
 }
 
-/// The faces that lines cross in one way.
+/// The faces whose n·d has this sign.
 fn faces<R>(functions: &EdgeFunctions<R>, face_signs: Ordering) -> impl Iterator<Item = usize> {
     functions
         .face_signs
@@ -293,7 +293,7 @@ fn faces<R>(functions: &EdgeFunctions<R>, face_signs: Ordering) -> impl Iterator
         .filter_map(move |(face, sign)| (sign == face_signs).then_some(face))
 }
 
-/// The place in [`EDGES`] of the edge that faces i < j share.
+/// The index in [`EDGES`] of the edge that faces i < j share.
 fn edge_of(i: usize, j: usize) -> usize {
     match (i, j) {
         (0, j) => j - 1,

@@ -35,7 +35,7 @@ impl<R: Real> Frame<R> {
                 .face_signs(&looking())
         });
         let eye = looking::<R>().vector;
-        let to_light = self.way_to_light(scene, mirrored).vector;
+        let to_light = self.direction_to_light(scene, mirrored).vector;
         let across = eye.cross(to_light);
         let beside = [across.x, across.y, across.z];
         let parallel = beside.map(|x| x.sign().map(Ordering::is_eq));
@@ -156,7 +156,7 @@ impl<'f, R: Real> View<'f, R> {
         room: &impl Room<'f>,
     ) -> Self {
         let mirror = frame.mirror(scene).filter(|_| mirrored);
-        let to_light = frame.way_to_light(scene, mirrored);
+        let to_light = frame.direction_to_light(scene, mirrored);
         let halfway = match signs.halfway {
             Halfway::None => None,
             Halfway::Given(given) => {
@@ -175,7 +175,7 @@ impl<'f, R: Real> View<'f, R> {
                 .iter()
                 .zip(&scene.facts().spheres)
                 .map(|(sphere, &support)| Sphere {
-                    center: reflect(frame.place(sphere.center), mirror),
+                    center: reflect(frame.point(sphere.center), mirror),
                     radius: R::exact(sphere.radius) * frame.scale,
                     support,
                 });
@@ -218,18 +218,18 @@ impl<'f, R: Real> View<'f, R> {
         from: Option<R>,
         kinds: SolidKinds,
     ) -> Result<Option<(usize, Hit<R>)>, R::Doubt> {
-        let y = self.extents.place(row);
+        let y = self.extents.y_of(row);
         let mut first: Option<(usize, Hit<R>)> = None;
         for solid in self.extents.at((column, row)) {
             if let Some((_, hit)) = &first {
-                let least = self.extents.least_depth(solid, y);
-                let is_behind = least.is_finite() && {
-                    let least = R::exact(least);
-                    let least = from.map_or(least, |from| least - from);
-                    (least - hit.depth).sign().is_ok_and(Ordering::is_gt)
+                let nearest = self.extents.min_depth(solid, y);
+                let is_behind = nearest.is_finite() && {
+                    let nearest = R::exact(nearest);
+                    let nearest = from.map_or(nearest, |from| nearest - from);
+                    (nearest - hit.depth).sign().is_ok_and(Ordering::is_gt)
                 };
                 if is_behind {
-                    // And so are all that follow.
+                    // All following solids are behind, too.
                     break;
                 }
             }

@@ -87,12 +87,13 @@ struct Found {
 #[derive(Default)]
 struct ColumnCounts {
     all: usize,
-    /// Those that a row says to be known, of these those that it says to face the light or not,
-    /// and those it says may have a highlight.
-    known: usize,
+    /// Pixels that the row certifies.
+    shadeable: usize,
+    /// Shadeable pixels of which the row tells whether they face the light.
     settled: usize,
+    /// Shadeable pixels that may have a highlight.
     bright: usize,
-    /// Those that have one.
+    /// Shadeable pixels that have one.
     highlight: usize,
 }
 
@@ -109,10 +110,10 @@ impl ColumnCounts {
     ) {
         let is_in = |columns: Columns| columns.0 <= column && column < columns.1;
         self.all += 1;
-        if !is_in(columns.known) {
+        if !is_in(columns.shadeable) {
             return;
         }
-        self.known += 1;
+        self.shadeable += 1;
         if let Some((inside, inside_faces)) = columns.facing {
             self.settled += 1;
             // As far as a double-double tells.
@@ -131,7 +132,7 @@ impl ColumnCounts {
     /// Few pixels are left for others to ask.
     fn expect(&self) {
         assert!(self.highlight > 1000 && self.settled > 1000);
-        let missed = [self.all - self.known, self.known - self.settled];
+        let missed = [self.all - self.shadeable, self.shadeable - self.settled];
         assert!(
             missed.iter().all(|&missed| missed < self.all / 50),
             "{missed:?}"
@@ -163,7 +164,7 @@ impl Case<'_> {
     #[inline(always)]
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
         let row_sphere = &self.row_sphere;
-        let y = self.grid.place(row);
+        let y = self.grid.coordinate(row);
         let m = row_sphere.m.at(y);
         let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
@@ -171,7 +172,7 @@ impl Case<'_> {
         cache.find(simd, row_sphere, below, self.grid);
         let columns = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
-            let x = self.grid.place(first);
+            let x = self.grid.coordinate(first);
             let hits = in_row.hits(x);
             let facing = in_row.value(&row_sphere.light, &hits);
             let zones = [0, 1, 2].map(|zone| {
@@ -223,11 +224,11 @@ impl Case<'_> {
                         &mut found.dull
                     };
                     let sample = 3 * lane + i;
-                    let (vector, place) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
+                    let (vector, lane) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
                     channels.note_between(
                         truth,
-                        samples[vector][0].as_slice()[place],
-                        samples[vector][1].as_slice()[place],
+                        samples[vector][0].as_slice()[lane],
+                        samples[vector][1].as_slice()[lane],
                     );
                 }
             }
@@ -238,13 +239,17 @@ impl Case<'_> {
 /// A picture, one of its views, and the factor of colours in that view: the reflectance, or 1.
 type ViewCase<'s, R> = (&'s Picture<'s, R>, &'s View<'s, R>, R);
 
-/// Checks the spheres of a view: `known` is in f64 with bounds, `truth` in double-doubles.
-fn check_view(known: ViewCase<'_, Bounded>, truth: ViewCase<'_, DoubleDouble>, found: &mut Found) {
+/// Checks the spheres of a view: `bounded` is in f64 with bounds, `truth` in double-doubles.
+fn check_view(
+    bounded: ViewCase<'_, Bounded>,
+    truth: ViewCase<'_, DoubleDouble>,
+    found: &mut Found,
+) {
     let grid = Grid::new(SIZE);
-    let (view, true_view) = (known.1, truth.1);
+    let (view, true_view) = (bounded.1, truth.1);
     for (index, sphere) in view.spheres.iter().enumerate() {
         let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
-        let color = known.0.solid_color(index) * known.2;
+        let color = bounded.0.solid_color(index) * bounded.2;
         let lighting = Lighting::new(&view.shading);
         let row_sphere = RowSphere::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
@@ -274,17 +279,17 @@ fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
     let arena = Arena::default();
     let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Double, &arena);
     let truth = ladder.picture::<DoubleDouble>(&&arena.frame);
-    let (known, truth) = (ladder.bounded(), &truth);
+    let (bounded, truth) = (ladder.bounded(), &truth);
     let one = (Bounded::exact(1.0), DoubleDouble::exact(1.0));
     check_view(
-        (known, &known.view, one.0),
+        (bounded, &bounded.view, one.0),
         (truth, &truth.view, one.1),
         found,
     );
-    let surfaces = known.surface.as_ref().zip(truth.surface.as_ref());
+    let surfaces = bounded.surface.as_ref().zip(truth.surface.as_ref());
     if let Some((Some(a), Some(b))) = surfaces.map(|(a, b)| (&a.mirror, &b.mirror)) {
         check_view(
-            (known, &a.view, a.reflectance),
+            (bounded, &a.view, a.reflectance),
             (truth, &b.view, b.reflectance),
             found,
         );

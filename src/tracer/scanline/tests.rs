@@ -191,7 +191,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
         tracer.begin(&mut scratch);
         let (mut told, mut asked) = (0, 0);
         for row in 0..size {
-            let y = tracer.frame.grid.place(row);
+            let y = tracer.frame.grid.coordinate(row);
             let mut from = 0;
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut settled = Settled::default();

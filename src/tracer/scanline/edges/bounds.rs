@@ -47,22 +47,22 @@ fn share(truth: DoubleDouble, low: f64, high: f64) -> f64 {
     }
 }
 
-/// X of a place given in columns.
+/// X in columns.
 fn column_of(x: DoubleDouble, grid: Grid) -> DoubleDouble {
     x / DoubleDouble::exact(3.0) + DoubleDouble::exact(grid.half)
 }
 
 fn check_spheres(
-    known: &Picture<'_, Bounded>,
+    bounded: &Picture<'_, Bounded>,
     truth: &Picture<'_, DoubleDouble>,
     grid: Grid,
     shares: &mut Shares,
 ) {
-    for (sphere, exact) in known.view.spheres.iter().zip(truth.view.spheres) {
+    for (sphere, exact) in bounded.view.spheres.iter().zip(truth.view.spheres) {
         let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
         let depth = Depth::of_sphere(sphere.center, &outline, sphere.support, grid);
         for row in (0..SIZE).step_by(7) {
-            let y = grid.place(row);
+            let y = grid.coordinate(row);
             let enclosure =
                 dispatch!(Level::baseline(), simd => outline.enclose_row(simd, y, grid));
             let Enclosure { possible, certain } = enclosure;
@@ -71,7 +71,7 @@ fn check_spheres(
                 continue;
             }
             let [three, ten] = [3.0, 10.0].map(DoubleDouble::exact);
-            let z = DoubleDouble::exact(grid.reach) - exact.center.z;
+            let z = DoubleDouble::exact(grid.max) - exact.center.z;
             let y_off = DoubleDouble::exact(y) - exact.center.y;
             let m = (ten * y_off - three * z) / DoubleDouble::exact(109.0).sqrt();
             let half = (exact.radius.squared() - m.squared()).sqrt();
@@ -84,15 +84,15 @@ fn check_spheres(
                 .take_while(|column| f64::from(*column) < certain[1])
                 .step_by(11)
             {
-                let x = grid.place(column);
+                let x = grid.coordinate(column);
                 let at = Rectangle {
                     x: [x, x],
                     y: [y, y],
                 };
-                let (least, most) = depth.bounds(None, at);
+                let (lower, upper) = depth.bounds(None, at);
                 let hit = exact.first_hit(&truth.eye_ray(column, row)).unwrap();
                 if let Some(hit) = hit {
-                    let part = share(hit.depth, least, most);
+                    let part = share(hit.depth, lower, upper);
                     shares.sphere_depth = shares.sphere_depth.max(part);
                 }
             }
@@ -101,13 +101,13 @@ fn check_spheres(
 }
 
 fn check_tetrahedra(
-    known: &Picture<'_, Bounded>,
+    bounded: &Picture<'_, Bounded>,
     truth: &Picture<'_, DoubleDouble>,
     grid: Grid,
     shares: &mut Shares,
 ) {
     let screen = screen_plane(grid);
-    for (t, exact) in known.view.tetrahedra.iter().zip(truth.view.tetrahedra) {
+    for (t, exact) in bounded.view.tetrahedra.iter().zip(truth.view.tetrahedra) {
         let half_spaces = t
             .solid
             .met(&t.from_eye)
@@ -115,7 +115,7 @@ fn check_tetrahedra(
         for (half_space, exact) in half_spaces {
             let half_plane = HalfPlane::of(&half_space, &screen, grid);
             for row in (0..SIZE).step_by(7) {
-                let y = grid.place(row);
+                let y = grid.coordinate(row);
                 let all = [0.0, f64::from(SIZE)];
                 let mut enclosure = Enclosure {
                     possible: all,
@@ -126,7 +126,7 @@ fn check_tetrahedra(
                 // n·(X, Y, Z) = n·a.
                 let (n, a) = (exact.normal, exact.at);
                 let rest = n.y * (a.y - DoubleDouble::exact(y))
-                    + n.z * (a.z - DoubleDouble::exact(grid.reach));
+                    + n.z * (a.z - DoubleDouble::exact(grid.max));
                 let root = column_of(a.x + rest / n.x, grid);
                 for (low, high) in [(possible[0], certain[0]), (certain[1], possible[1])] {
                     if 0.0 < low && low < high && high < f64::from(SIZE) {
@@ -143,11 +143,11 @@ fn check_tetrahedra(
                 .flat_map(|x| (0..SIZE).step_by(37).map(move |y| (x, y)))
             {
                 let ray = truth.eye_ray(column, row);
-                let speed = plane.normal.dot(ray.direction.vector);
-                let exact = plane.normal.dot(plane.at - ray.origin) / speed;
-                let [x, y] = [column, row].map(|number| [grid.place(number); 2]);
-                let (least, most) = depth.bounds(Rectangle { x, y });
-                shares.face_depth = shares.face_depth.max(share(exact, least, most));
+                let n_dot_d = plane.normal.dot(ray.direction.vector);
+                let exact = plane.normal.dot(plane.at - ray.origin) / n_dot_d;
+                let [x, y] = [column, row].map(|number| [grid.coordinate(number); 2]);
+                let (lower, upper) = depth.bounds(Rectangle { x, y });
+                shares.face_depth = shares.face_depth.max(share(exact, lower, upper));
             }
         }
     }
@@ -159,8 +159,8 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
     let mut random = Random::new();
     let mut shares = Shares::default();
     for _ in 0..700 {
-        let mut numbers = |count: usize, reach: f64| -> Vec<f64> {
-            let mut number = || reach * (2.0 * random.fraction() - 1.0);
+        let mut numbers = |count: usize, max: f64| -> Vec<f64> {
+            let mut number = || max * (2.0 * random.fraction() - 1.0);
             (0..count).map(|_| number()).collect()
         };
         let center = numbers(3, 3.0);

@@ -108,25 +108,25 @@ impl Ellipse {
         squared_radius: Bounded,
         grid: Grid,
     ) -> Ellipse {
-        let reach = grid.reach;
+        let max = grid.max;
         let (zero, slope) = (-(m.0 / m.1), m.1);
         // A linear function of Y in f64: its coefficients' errors, and two roundings.
         let error = |(a, b): (Bounded, Bounded)| {
-            (a.error() + b.error() * reach + 4.0 * U * (a.value().abs() + b.value().abs() * reach))
+            (a.error() + b.error() * max + 4.0 * U * (a.value().abs() + b.value().abs() * max))
                 * INFLATION
         };
         let radius = squared_radius.at_most().max(0.0).sqrt() * INFLATION;
-        // What Y − zero is off by, where |m| is not much more than R: the zero's own error, and one
+        // The error of Y − zero, where |m| is not much more than R: that of the zero, and one
         // rounding. The product rounds too.
         let away = 2.0 * radius / slope.value().abs() + 4.0 * zero.error();
         let shift = zero.error() + U * away;
         let m_error =
             (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * INFLATION;
-        // Rows at which |m| seems to be more than R and the error do miss it, near the zero as the
-        // error says, and farther away because the slope is known to a quarter. Otherwise
-        // nothing is known.
-        let known = slope.error() < slope.value().abs() / 4.0;
-        let limit = if known {
+        // A row with a computed |m| above R plus its error misses the ellipse: near the zero by the
+        // bound on the error, and farther away because the slope is right to a quarter. If the slope
+        // is not, every row is in doubt.
+        let is_steep = slope.error() < slope.value().abs() / 4.0;
+        let limit = if is_steep {
             (radius + m_error) * INFLATION
         } else {
             f64::INFINITY
@@ -138,8 +138,8 @@ impl Ellipse {
             * INFLATION;
         // The chord's half is at most the radius. Its root, the sum with the middle, a third of it
         // and the sum with N/2 round by less than u of |middle| + radius + N each.
-        let middle = center.0.value().abs() + center.1.value().abs() * reach;
-        let slack = (error(center) + 16.0 * U * (middle + radius + reach)) * INFLATION;
+        let middle = center.0.value().abs() + center.1.value().abs() * max;
+        let slack = (error(center) + 16.0 * U * (middle + radius + max)) * INFLATION;
         let all = [
             center.0.value(),
             center.1.value(),
@@ -170,7 +170,7 @@ impl Ellipse {
     pub(crate) fn outline(center: Vector<Bounded>, radius: Bounded, grid: Grid) -> Ellipse {
         let root = Bounded::exact(109.0).sqrt();
         let [three, ten] = [3.0, 10.0].map(Bounded::exact);
-        let z = Bounded::exact(grid.reach) - center.z;
+        let z = Bounded::exact(grid.max) - center.z;
         Ellipse::new(
             (center.x, Bounded::exact(0.0)),
             ((-(ten * center.y) - three * z) / root, ten / root),
@@ -179,7 +179,7 @@ impl Ellipse {
         )
     }
 
-    /// What it has of as many rows as there are lanes.
+    /// The enclosures of as many rows as there are lanes.
     #[inline(always)]
     pub(crate) fn enclose<S: Simd>(&self, simd: S, y: S::f64s, grid: Grid) -> Enclosure<S::f64s> {
         let zero = S::f64s::splat(simd, 0.0);
@@ -197,7 +197,7 @@ impl Ellipse {
         let is_met = m.abs().simd_le(self.limit) & upper.simd_ge(zero);
         let is_certain = is_met & lower.simd_gt(zero);
         let middle = y * self.center.1 + self.center.0;
-        // No NaN comes here: m is infinite at worst, and then the row is beyond.
+        // m is no NaN here. Where it is infinite, the row misses the ellipse.
         let half = upper.max(zero).sqrt();
         let from = in_columns::<S>(grid, middle - half) - self.slack;
         let to = in_columns::<S>(grid, middle + half) + self.slack;
@@ -209,18 +209,18 @@ impl Ellipse {
         Enclosure { possible, certain }
     }
 
-    /// The same of the row at Y.
+    /// The enclosure of the row at Y.
     #[inline(always)]
     pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> Enclosure<f64> {
         let y = S::f64s::splat(simd, y);
         let Enclosure { possible, certain } = self.enclose(simd, y, grid);
         Enclosure {
-            possible: possible.map(|place| place.as_slice()[0]),
-            certain: certain.map(|place| place.as_slice()[0]),
+            possible: possible.map(|end| end.as_slice()[0]),
+            certain: certain.map(|end| end.as_slice()[0]),
         }
     }
 
-    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    /// Whether the pixel at X, Y is in the ellipse; `None` where that is in doubt.
     pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let Enclosure { possible, certain } =
             dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
@@ -231,13 +231,13 @@ impl Ellipse {
         (certain[0] <= column && column <= certain[1]).then_some(true)
     }
 
-    /// The rows that it can cross.
+    /// The half-open range of the rows that the ellipse may reach.
     pub(crate) fn rows(&self, grid: Grid) -> (u32, u32) {
         let ends = [-self.limit, self.limit].map(|m| self.m.zero + m / self.m.slope);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         // A row more on either side is far more than rounding takes.
-        let place = |y: f64| grid.half + y / 3.0;
-        let rows = (grid.ceil(place(low) - 1.0), grid.count(place(high) + 1.0));
+        let row_of = |y: f64| grid.half + y / 3.0;
+        let rows = (grid.ceil(row_of(low) - 1.0), grid.count(row_of(high) + 1.0));
         if low.is_finite() && high.is_finite() {
             rows
         } else {

@@ -1,4 +1,4 @@
-//! Pixels on one side of a straight edge.
+//! Pixels on one side of a straight line.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -16,38 +16,42 @@ pub(crate) struct HalfPlane {
     constant: Bounded,
     column: Bounded,
     row: Bounded,
+    /// Whether pixels with a sum of 0 belong to it.
     closed: bool,
-    crossing: Crossing,
+    border: Border,
 }
 
-/// How rows cross an edge.
+/// The border of a half-plane, as rows cross it.
 #[derive(Clone, Copy)]
-enum Crossing {
-    /// At `at` + `per_row` Y in columns, and at most `slack` columns beside that; the half-plane is
-    /// to the right of it, or to the left.
-    Right(Root),
+enum Border {
+    /// The half-plane lies to the right of the root.
     Left(Root),
-    /// Not to be told from not at all. A bound on the error of the sum but for the part of Y.
-    Never {
+    /// The half-plane lies to the left of the root.
+    Right(Root),
+    /// The border is level, or f64 does not tell that it is not.
+    Level {
+        /// A bound on the error of the sum, without that of the part of Y.
         error: f64,
     },
 }
 
+/// Where the border crosses a row, in columns: at + per_row · Y.
 #[derive(Clone, Copy)]
 struct Root {
     at: f64,
     per_row: f64,
+    /// A bound on the error in columns.
     slack: f64,
 }
 
 impl HalfPlane {
-    /// One of which nothing is known.
+    /// A half-plane of which every pixel is in doubt.
     pub(crate) const UNKNOWN: HalfPlane = HalfPlane {
         constant: Bounded::UNKNOWN,
         column: Bounded::UNKNOWN,
         row: Bounded::UNKNOWN,
         closed: false,
-        crossing: Crossing::Never {
+        border: Border::Level {
             error: f64::INFINITY,
         },
     };
@@ -59,15 +63,15 @@ impl HalfPlane {
         closed: bool,
         grid: Grid,
     ) -> Self {
-        let reach = grid.reach;
-        // The errors of the coefficients.
-        let carried = constant.error() + (column.error() + row.error()) * reach;
-        let magnitude = constant.value().abs() + row.value().abs() * reach;
-        let across = column.value().abs() * reach;
-        // In columns the root is N/2 − (constant + row · Y)/(3 · column). The errors move it by
-        // that part of theirs. The inverse of 3 · column rounds by 2u, `at` and `per_row`
-        // by 2u more, the product with Y and the sum with it by u each: less than 8u of the
-        // terms' magnitudes, and of N/2 and the root, which is below 3N where it matters.
+        let max = grid.max;
+        // The part of the sum's error that comes from the coefficients.
+        let carried = constant.error() + (column.error() + row.error()) * max;
+        let magnitude = constant.value().abs() + row.value().abs() * max;
+        let magnitude_of_x = column.value().abs() * max;
+        // In columns the root is N/2 − (constant + row · Y)/(3 · column), and moves by the same part
+        // of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_row` by 2u more,
+        // the product with Y and the sum with it by u each: less than 8u of the terms' magnitudes,
+        // and of N/2 and the root, which is below 3N where it matters.
         let inverse = 1.0 / (3.0 * column.value());
         let root = Root {
             at: grid.half - constant.value() * inverse,
@@ -76,22 +80,22 @@ impl HalfPlane {
                 + 16.0 * U * 3.0 * f64::from(grid.size))
                 * INFLATION,
         };
-        let is_known = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
+        let is_finite = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
         // The sum rounds by less than 2u of its terms twice.
         let error = (carried + 4.0 * U * magnitude) * INFLATION;
-        let crossing = match inverse > 0.0 {
-            _ if !is_known || across <= error => Crossing::Never {
-                error: (error + across) * INFLATION,
+        let border = match inverse > 0.0 {
+            _ if !is_finite || magnitude_of_x <= error => Border::Level {
+                error: (error + magnitude_of_x) * INFLATION,
             },
-            true => Crossing::Right(root),
-            false => Crossing::Left(root),
+            true => Border::Left(root),
+            false => Border::Right(root),
         };
         HalfPlane {
             constant,
             column,
             row,
             closed,
-            crossing,
+            border,
         }
     }
 
@@ -99,7 +103,7 @@ impl HalfPlane {
     pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
         let n = half_space.normal;
         if half_space.border.is_some() && half_space.border == plane.plane {
-            // All of them lie on its edge.
+            // All points lie on the border.
             let zero = Bounded::exact(0.0);
             return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
         }
@@ -112,19 +116,19 @@ impl HalfPlane {
         )
     }
 
-    /// Whether the sum is known to be in it at X, Y; `None` where it is not known.
+    /// Whether the pixel at X, Y is in the half-plane; `None` where that is in doubt.
     fn decide(&self, x: f64, y: f64) -> Option<bool> {
         let sum = self.constant + self.row * Bounded::exact(y) + self.column * Bounded::exact(x);
         let sign = sum.sign().ok()?;
         Some(sign.is_gt() || (self.closed && sign.is_eq()))
     }
 
-    /// The same, asked only where its edge may be.
+    /// The same, with the sum computed only near the border.
     pub(crate) fn decide_near(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let (root, rightward) = match &self.crossing {
-            Crossing::Right(root) => (root, true),
-            Crossing::Left(root) => (root, false),
-            Crossing::Never { .. } => return self.decide(x, y),
+        let (root, rightward) = match &self.border {
+            Border::Left(root) => (root, true),
+            Border::Right(root) => (root, false),
+            Border::Level { .. } => return self.decide(x, y),
         };
         let beyond = grid.half + x / 3.0 - (y * root.per_row + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
@@ -134,22 +138,22 @@ impl HalfPlane {
         }
     }
 
-    /// Brings in what it has of as many rows as there are lanes.
+    /// Intersects enclosures of as many rows as there are lanes with the half-plane.
     #[inline(always)]
     pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut Enclosure<S::f64s>) {
         let Enclosure { possible, certain } = enclosure;
-        match &self.crossing {
-            Crossing::Right(root) => {
-                let place = y * root.per_row + root.at;
-                possible[0] = possible[0].max(place - root.slack);
-                certain[0] = certain[0].max(place + root.slack);
+        match &self.border {
+            Border::Left(root) => {
+                let root_column = y * root.per_row + root.at;
+                possible[0] = possible[0].max(root_column - root.slack);
+                certain[0] = certain[0].max(root_column + root.slack);
             }
-            Crossing::Left(root) => {
-                let place = y * root.per_row + root.at;
-                possible[1] = possible[1].min(place + root.slack);
-                certain[1] = certain[1].min(place - root.slack);
+            Border::Right(root) => {
+                let root_column = y * root.per_row + root.at;
+                possible[1] = possible[1].min(root_column + root.slack);
+                certain[1] = certain[1].min(root_column - root.slack);
             }
-            Crossing::Never { error } => {
+            Border::Level { error } => {
                 let sum = y * self.row.value() + self.constant.value();
                 let is_in = sum.simd_gt(*error);
                 if !is_in.all_true() {
@@ -174,7 +178,7 @@ impl HalfPlane {
         }
     }
 
-    /// The same of the row at Y.
+    /// The same for the row at Y.
     #[cfg(test)]
     #[inline(always)]
     pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut Enclosure<f64>) {

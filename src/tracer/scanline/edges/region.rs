@@ -20,7 +20,7 @@ use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::Enclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
-use crate::tracer::scanline::grid::{Grid, ROWS, places};
+use crate::tracer::scanline::grid::{Grid, ROWS, offsets};
 
 /// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
@@ -79,7 +79,7 @@ impl<'f> Region<'f> {
     pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
         let mut band = BandColumns::NONE;
         for first in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = places::<S>(simd, first) + grid.place(row);
+            let y = offsets::<S>(simd, first) + grid.coordinate(row);
             let mut enclosure = match &self.ellipse {
                 Some(ellipse) => ellipse.enclose(simd, y, grid),
                 None => {
@@ -95,7 +95,7 @@ impl<'f> Region<'f> {
                 half_plane.cut(simd, y, &mut enclosure);
             }
             let is_crossed =
-                y.simd_ge(grid.place(self.rows.0)) & y.simd_lt(grid.place(self.rows.1));
+                y.simd_ge(grid.coordinate(self.rows.0)) & y.simd_lt(grid.coordinate(self.rows.1));
             let Enclosure { possible, certain } = enclosure;
             let possible = [
                 grid.ceil_all::<S>(possible[0]),
@@ -119,11 +119,11 @@ impl<'f> Region<'f> {
             if (from, to) == certain {
                 continue;
             }
-            let y = grid.place(row + i as u32);
+            let y = grid.coordinate(row + i as u32);
             let is_certain = |column: u32| certain.0 <= column && column < certain.1;
             let holds = |column: u32| match is_certain(column) {
                 true => Some(true),
-                false => self.decide(grid.place(column), y, grid),
+                false => self.decide(grid.coordinate(column), y, grid),
             };
             let (mut first, mut last) = (None, None);
             while from < to && first.is_none() {
@@ -140,13 +140,13 @@ impl<'f> Region<'f> {
                     None => break,
                 }
             }
-            // What lies between columns of a convex part of the picture is in it.
-            let known = [first, last].into_iter().flatten();
-            let known = known.flat_map(|column| [column, column + 1]);
+            // A region is convex: the columns between two of its columns are in it.
+            let decided = [first, last].into_iter().flatten();
+            let decided = decided.flat_map(|column| [column, column + 1]);
             let certain = [certain.0, certain.1]
                 .into_iter()
                 .filter(|_| certain.0 < certain.1);
-            let ends = known.chain(certain);
+            let ends = decided.chain(certain);
             let (begin, end) = ends.fold((u32::MAX, 0), |(begin, end), column| {
                 (begin.min(column), end.max(column))
             });
@@ -164,7 +164,7 @@ impl<'f> Region<'f> {
         }
     }
 
-    /// Whether it is known to hold the pixel at X, Y, or known not to.
+    /// Whether the pixel at X, Y is in the region; `None` where that is in doubt.
     fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let mut all = match &self.ellipse {
             Some(ellipse) => ellipse.decide(x, y, grid),

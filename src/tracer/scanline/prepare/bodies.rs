@@ -40,12 +40,12 @@ pub(crate) fn with_bodies<'f>(
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let bodies = Bodies::new(picture, view, mirrored);
     let mut solids = Growing::with_capacity_in(numbers.len(), arena);
-    for (place, solid) in outlines.all.into_iter().enumerate() {
+    for (index, solid) in outlines.all.into_iter().enumerate() {
         let body = bodies.of(&solid, parts);
         let edge = if mirrored {
-            RegionKind::Mirrored(place)
+            RegionKind::Mirrored(index)
         } else {
-            RegionKind::Direct(place)
+            RegionKind::Direct(index)
         };
         parts.edge_table.add(solid.outline, edge);
         solids.push(PreparedSolid {
@@ -167,7 +167,7 @@ impl<'p, 's> Bodies<'p, 's> {
                 shadows: parts.edge_table.add_receiver(shadows, rows),
             });
         }
-        let place = |face: usize| {
+        let index = |face: usize| {
             solid
                 .front_faces
                 .iter()
@@ -179,7 +179,7 @@ impl<'p, 's> Bodies<'p, 's> {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
             let crease = Region::new(crease, None, grid).within(rows);
             Some(Pair {
-                front_faces: (place(i)?, place(j)?),
+                front_faces: (index(i)?, index(j)?),
                 first: parts.edge_table.add(crease, RegionKind::Crease),
             })
         });

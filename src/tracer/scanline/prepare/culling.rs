@@ -14,8 +14,8 @@ use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
 
 /// There are so many tiles side by side, and so many on top of each other, or fewer: a tile is a
 /// multiple of [`ROWS`] high.
-const ACROSS: u32 = 16;
-const UP: u32 = 64;
+const TILES_IN_A_ROW: u32 = 16;
+const TILE_ROWS: u32 = 64;
 
 /// A half-open range of rows.
 pub(crate) type Rows = (u32, u32);
@@ -45,8 +45,8 @@ impl<'f> Tiles<'f> {
     /// Tiles in which everything is seen.
     pub(crate) fn new(grid: Grid, level: Level, arena: &'f Bump) -> Self {
         let rows = ROWS as u32;
-        let width = grid.size.div_ceil(ACROSS).max(rows);
-        let height = grid.size.div_ceil(UP).next_multiple_of(rows);
+        let width = grid.size.div_ceil(TILES_IN_A_ROW).max(rows);
+        let height = grid.size.div_ceil(TILE_ROWS).next_multiple_of(rows);
         let (across, up) = (grid.size.div_ceil(width), grid.size.div_ceil(height));
         Tiles {
             grid,
@@ -82,7 +82,8 @@ impl<'f> Tiles<'f> {
 
     fn rectangle(&self, across: u32, up: u32) -> Rectangle {
         let (columns, rows) = self.of(across, up);
-        let ends = |(from, to): (u32, u32)| [from, to - 1].map(|number| self.grid.place(number));
+        let ends =
+            |(from, to): (u32, u32)| [from, to - 1].map(|number| self.grid.coordinate(number));
         Rectangle {
             x: ends(columns),
             y: ends(rows),
@@ -142,9 +143,9 @@ impl<'f> Tiles<'f> {
         for up in self.rows_of_tiles(outline.rows()) {
             let columns = self.columns(outline, up);
             for across in self.covered(columns.certain) {
-                let (_, most) = depth.bounds(None, self.rectangle(across, up));
+                let (_, upper) = depth.bounds(None, self.rectangle(across, up));
                 let before = &mut self.seen_before[(up * self.across + across) as usize];
-                *before = before.min(most);
+                *before = before.min(upper);
             }
         }
     }
@@ -153,9 +154,9 @@ impl<'f> Tiles<'f> {
     /// of it is hidden.
     pub(crate) fn rows_of_solid(&self, outline: &Region<'_>, depth: &Depth<'_>) -> Rows {
         self.rows_where(outline, |across, up| {
-            let (least, _) = depth.bounds(None, self.rectangle(across, up));
+            let (lower, _) = depth.bounds(None, self.rectangle(across, up));
             // Where the depth is no number, it is seen.
-            let is_hidden = least > self.seen_before[self.number(across, up)];
+            let is_hidden = lower > self.seen_before[self.number(across, up)];
             !is_hidden
         })
     }
@@ -184,7 +185,7 @@ impl<'f> Tiles<'f> {
     pub(crate) fn seen_through(
         &self,
         region: &Region<'_>,
-        least: impl Fn(f64) -> f64,
+        min_depth: impl Fn(f64) -> f64,
         arena: &'f Bump,
     ) -> Tiles<'f> {
         let tiles = Tiles::new(self.grid, self.level, arena);
@@ -194,7 +195,7 @@ impl<'f> Tiles<'f> {
             for across in self.reached(columns.possible) {
                 let [low, high] = self.rectangle(across, up).y;
                 let number = self.number(across, up);
-                let is_hidden = least(low).min(least(high)) > self.seen_before[number];
+                let is_hidden = min_depth(low).min(min_depth(high)) > self.seen_before[number];
                 if !is_hidden {
                     tiles.seen_before[number] = f64::INFINITY;
                 }

@@ -135,18 +135,18 @@ impl Depth<'_> {
     ) -> Depth<'static> {
         let [three, ten] = [3.0, 10.0].map(Bounded::exact);
         // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
-        let constant = ten * (Bounded::exact(grid.reach) - center.z) - three * center.y;
-        let magnitude = constant.value().abs() + 3.0 * grid.reach;
-        let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.reach);
+        let constant = ten * (Bounded::exact(grid.max) - center.z) - three * center.y;
+        let magnitude = constant.value().abs() + 3.0 * grid.max;
+        let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.max);
         let radius = outline.squared_radius.max(0.0).sqrt() * INFLATION;
-        let reach = radius + q;
+        let max_q = radius + q;
         Depth::Sphere {
             m: outline.m,
             squared_radius: outline.squared_radius,
             center_x: center.x.value(),
             g: [constant.value(), 3.0],
             error: (constant.error() + 8.0 * U * (magnitude + radius)) * INFLATION,
-            squared_error: (outline.chord_error + (2.0 * reach + q) * q + 8.0 * U * reach * reach)
+            squared_error: (outline.chord_error + (2.0 * max_q + q) * q + 8.0 * U * max_q * max_q)
                 * INFLATION,
             support,
         }
@@ -157,7 +157,7 @@ impl Depth<'_> {
 pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
     let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
     PixelPlane {
-        origin: vector(0.0, 0.0, grid.reach),
+        origin: vector(0.0, 0.0, grid.max),
         per_column: vector(1.0, 0.0, 0.0),
         per_row: vector(0.0, 1.0, 0.0),
         plane: None,
@@ -177,9 +177,9 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
         depth(eye.per_row),
     ];
     let sum = |of: &dyn Fn(&Bounded) -> f64| -> f64 {
-        let reaches = [1.0, grid.reach, grid.reach];
-        let terms = depths.iter().zip(reaches);
-        terms.map(|(depth, reach)| of(depth) * reach).sum()
+        let factors = [1.0, grid.max, grid.max];
+        let terms = depths.iter().zip(factors);
+        terms.map(|(depth, factor)| of(depth) * factor).sum()
     };
     let (magnitudes, errors) = (
         sum(&|depth| depth.value().abs()),

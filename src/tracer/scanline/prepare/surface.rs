@@ -50,7 +50,7 @@ impl<'f> PreparedSurface<'f> {
             origin: Vector::new(
                 zero,
                 surface.square.height,
-                Bounded::exact(grid.reach) + ten * height,
+                Bounded::exact(grid.max) + ten * height,
             ),
             per_column: Vector::new(one, zero, zero),
             per_row: Vector::new(zero, zero, -(ten * third)),
@@ -69,7 +69,7 @@ impl<'f> PreparedSurface<'f> {
         let sides =
             sides.map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, grid));
         let scene = picture.scene;
-        let magnitude = height.value().abs() + grid.reach;
+        let magnitude = height.value().abs() + grid.max;
         // A ray to the light that rises from the surface has all solids above the surface ahead. A
         // solid that touches the ray's origin is seen there itself, and not the surface.
         let rises = scene.light().direction.y < 0.0;

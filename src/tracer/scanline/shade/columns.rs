@@ -16,7 +16,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, places, store_columns};
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets, store_columns};
 use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
@@ -32,7 +32,7 @@ type Intervals = [[u32; ROWS]; 2];
 #[derive(Clone)]
 pub(crate) struct SphereBand {
     /// Those that are hit deep enough inside the outline for f64 to say anything.
-    known: Intervals,
+    shadeable: Intervals,
     /// Those in each zone but the outermost.
     zones: [Intervals; ZONES - 1],
     facing: Arcs,
@@ -60,7 +60,7 @@ struct Arcs {
 /// What is known of a sphere's pixels in a row.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereColumns {
-    pub(crate) known: Columns,
+    pub(crate) shadeable: Columns,
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
     /// The casters that may cast a shadow on them, by [`bit_of`].
@@ -111,7 +111,7 @@ impl SphereCache {
 
 impl SphereBand {
     pub(crate) const NONE: SphereBand = SphereBand {
-        known: [[0; ROWS]; 2],
+        shadeable: [[0; ROWS]; 2],
         zones: [[[0; ROWS]; 2]; ZONES - 1],
         facing: Arcs {
             inside: [[0; ROWS]; 2],
@@ -131,7 +131,7 @@ impl SphereBand {
             settled,
         } = &self.facing;
         SphereColumns {
-            known: of(&self.known),
+            shadeable: of(&self.shadeable),
             zones: [of(&self.zones[0]), of(&self.zones[1])],
             bright: of(&self.bright),
             casters: self.casters,
@@ -139,12 +139,12 @@ impl SphereBand {
         }
     }
 
-    /// The casters that may cast a shadow on any of the pixels known.
+    /// The casters that may cast a shadow on any of the shadeable pixels.
     fn casters_near(&self, shaded: &ShadedSphere<'_>, first: u32, grid: Grid) -> u64 {
         if shaded.casters.is_empty() {
             return 0;
         }
-        let [from, to] = &self.known;
+        let [from, to] = &self.shadeable;
         let is_met = |row: &usize| from[*row] < to[*row];
         let (Some(low), Some(high)) = ((0..ROWS).find(is_met), (0..ROWS).rfind(is_met)) else {
             return 0;
@@ -152,8 +152,8 @@ impl SphereBand {
         let rows = low..high + 1;
         let begin = from[rows.clone()].iter().fold(u32::MAX, |a, &b| a.min(b));
         let end = to[rows].iter().fold(0, |a, &b| a.max(b));
-        let columns = (grid.place(begin), grid.place(end - 1));
-        let row = |row: usize| grid.place(first + row as u32);
+        let columns = (grid.coordinate(begin), grid.coordinate(end - 1));
+        let row = |row: usize| grid.coordinate(first + row as u32);
         let hits = shaded.sphere.hit_box(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
         let near = casters.filter(|(_, caster)| !caster.misses(&hits));
@@ -167,7 +167,7 @@ impl SphereBand {
         self.facing.settled = 0;
         self.bright = SphereBand::NONE.bright;
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = places::<S>(simd, lane) + grid.place(first);
+            let y = offsets::<S>(simd, lane) + grid.coordinate(first);
             let m = sphere.m.of_rows::<S>(y);
             let rows = InRows {
                 simd,
@@ -177,12 +177,12 @@ impl SphereBand {
                 squared: -(m * m) + sphere.squared_radius,
             };
             let [innermost, inner, outermost] = sphere.min_squares;
-            let known = rows.chord(outermost);
-            store::<S>(known, &mut self.known, lane);
+            let shadeable = rows.chord(outermost);
+            store::<S>(shadeable, &mut self.shadeable, lane);
             store::<S>(rows.chord(innermost), &mut self.zones[0], lane);
             store::<S>(rows.chord(inner), &mut self.zones[1], lane);
             if sphere.shadows {
-                let (inside, settled) = rows.arc(&sphere.light, 0.0, known);
+                let (inside, settled) = rows.arc(&sphere.light, 0.0, shadeable);
                 store::<S>(inside, &mut self.facing.inside, lane);
                 self.facing.settled |= settled.to_bitmask() << lane;
             }
@@ -192,10 +192,10 @@ impl SphereBand {
                     .abs()
                     .simd_le(highlight.max_distance);
                 if is_near.any_true() {
-                    let (inside, settled) = rows.arc(&highlight.form, sphere.threshold, known);
-                    let mut bright = known;
+                    let (inside, settled) = rows.arc(&highlight.form, sphere.threshold, shadeable);
+                    let mut bright = shadeable;
                     if highlight.form.is_concave == Some(true) {
-                        bright = select::<S>(settled, inside, known);
+                        bright = select::<S>(settled, inside, shadeable);
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
                     let bright = select::<S>(is_near, bright, none);
@@ -265,31 +265,31 @@ impl<S: Simd> InRows<'_, S> {
         (self.m * form.m + form.constant + q * form.q + s * form.s - level) * sign
     }
 
-    /// Of the columns `known` those in which a form is above `level`, if it is concave, or below,
+    /// Of the columns `shadeable` those in which a form is above `level`, if it is concave, or below,
     /// if it is convex; and in which rows it certainly is there, and not in the others.
     #[inline(always)]
     fn arc(
         &self,
         form: &LinearForm,
         level: f64,
-        known: Ends<S::f64s>,
+        shadeable: Ends<S::f64s>,
     ) -> (Ends<S::f64s>, S::mask64s) {
         let none = S::mask64s::splat(self.simd, false);
         let sign = match form.is_concave {
             Some(true) => 1.0,
             Some(false) => -1.0,
-            None => return (known, none),
+            None => return (shadeable, none),
         };
         // The form is F = r + a q + o s, with o ≥ 0, and 0 at (r + a q)² = o² s².
         let (a, o) = (form.q * sign, form.s * sign);
         let norm = a * a + o * o;
         let inverse = 1.0 / norm;
         if !inverse.is_finite() {
-            return (known, none);
+            return (shadeable, none);
         }
         let zero = S::f64s::splat(self.simd, 0.0);
         let one = S::f64s::splat(self.simd, 1.0);
-        let [first, end] = known;
+        let [first, end] = shadeable;
         let last = end - one;
         let r = (self.m * form.m + form.constant - level) * sign;
         let discriminant = self.squared * norm - r * r;

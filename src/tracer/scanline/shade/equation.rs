@@ -63,7 +63,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         }
     }
 
-    /// n·l from each of two places on; of the first where a vector holds all pixels from there on.
+    /// n·l of the pixels from X = `x` on, in two vectors if one does not hold all, from `next` on.
     #[inline(always)]
     pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [LaneVector<S, P>; 2] {
         let mut lights = [self.value(&self.sphere.light, &self.hits(x)); 2];

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdFloatElement};
 
-use crate::tracer::scanline::grid::places;
+use crate::tracer::scanline::grid::offsets;
 use crate::tracer::scanline::shade::sphere::Cycle;
 
 /// f32 or f64.
@@ -66,7 +66,7 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn differences<S: Simd>(simd: S, x: f64, center: f64) -> S::f64s {
-        places::<S>(simd, 0) + x - center
+        offsets::<S>(simd, 0) + x - center
     }
 
     #[inline(always)]

@@ -22,7 +22,7 @@ pub(crate) struct RunScratch {
     pub(crate) doubts: Vec<u32>,
 }
 
-/// The pixels of a run, all of them known: where they are, and where they go.
+/// The pixels of a run, all of them shadeable: where they are, and where their samples go.
 pub(crate) struct Run<'r> {
     pub(crate) grid: Grid,
     /// Y.
@@ -45,10 +45,10 @@ pub(crate) struct Run<'r> {
 // dispatch, which closures given to other functions are not.
 
 impl Run<'_> {
-    /// X of a pixel, and of that so many pixels on.
+    /// X of a pixel, and of the pixel `on` columns to the right.
     #[inline(always)]
-    fn places(&self, first: usize, on: usize) -> [f64; 2] {
-        let x = self.grid.place(self.from + first as u32);
+    fn x(&self, first: usize, on: usize) -> [f64; 2] {
+        let x = self.grid.coordinate(self.from + first as u32);
         [x, x + 3.0 * on as f64]
     }
 
@@ -94,11 +94,11 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
     // So many pixels are written at a time; where a vector holds fewer, they are in two of them.
     let (width, lanes) = (S::f32s::LEN, LaneVector::<S, P>::LEN);
     let row = SphereInRow::<S, P>::new(simd, &shaded.sphere, run.y);
-    let asks = !run.is_facing || !run.scratch.casters.is_empty();
+    let tests_shadows = !run.is_facing || !run.scratch.casters.is_empty();
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
     let (mut done, mut first) = (0, 0);
-    let mut lights = row.lights(run.places(first, lanes));
+    let mut lights = row.lights(run.x(first, lanes));
     while done < count {
         // The last vector may lie on part of the one before it.
         let next = (first + width).min(last);
@@ -106,17 +106,17 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         // own.
         let now = lights;
         if next > first {
-            lights = row.lights(run.places(next, lanes));
+            lights = row.lights(run.x(next, lanes));
         }
         let here = width.min(count - first);
         let all = u64::MAX >> (64 - here);
         let column = run.from + first as u32;
-        let places = run.places(first, lanes);
+        let x = run.x(first, lanes);
         let (mut in_shadow, mut unknown) = (0, 0);
-        if asks {
+        if tests_shadows {
             // Of a short run there may be nothing in the second vector.
             for half in 0..here.div_ceil(lanes) {
-                let (dark, doubts) = shadowed(&row, shaded, run, places[half], now[half]);
+                let (dark, doubts) = shadowed(&row, shaded, run, x[half], now[half]);
                 in_shadow |= dark << (half * lanes);
                 unknown |= doubts << (half * lanes);
             }
@@ -130,10 +130,10 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             let [innermost, inner] = run.zones;
             let zone = usize::from(is_out(innermost)) + usize::from(is_out(inner));
             let ambient = row.ambient(zone);
-            let lit_low = row.lit(places[0], now[0], &ambient, (zone, bright));
+            let lit_low = row.lit(x[0], now[0], &ambient, (zone, bright));
             let mut lit_high = lit_low;
             if lanes < width {
-                lit_high = row.lit(places[1], now[1], &ambient, (zone, bright >> lanes));
+                lit_high = row.lit(x[1], now[1], &ambient, (zone, bright >> lanes));
             }
             let (rounded, doubts) = P::round(lit_low, lit_high);
             store::<S>(samples, &rounded);
@@ -155,8 +155,8 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
     }
 }
 
-/// Which pixels from X = `x` on are in shadow, and of which it is not known, bit by bit. `light`
-/// is their n·l.
+/// A bit for each pixel from X = `x` on: whether it is in shadow, and whether that is in doubt.
+/// `light` is their n·l.
 #[inline(always)]
 fn shadowed<S: Simd, P: Policy<S>>(
     row: &SphereInRow<'_, S, P>,

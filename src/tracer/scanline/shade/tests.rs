@@ -34,7 +34,7 @@ fn check(
     cache.begin(frame.shaded_spheres);
     for row in 0..SIZE {
         let columns = cache.of(shaded, row, level, frame.grid);
-        let (from, to) = columns.known;
+        let (from, to) = columns.shadeable;
         let count = (to - from) as usize;
         let mut samples = vec![0.0; 3 * count];
         let mut decisions = vec![Decision::Background; count];
@@ -42,7 +42,7 @@ fn check(
         scratch.casters.extend(0..shaded.casters.len());
         let mut run = Run {
             grid: frame.grid,
-            y: frame.grid.place(row),
+            y: frame.grid.coordinate(row),
             from,
             zones: columns.zones,
             bright: columns.bright,

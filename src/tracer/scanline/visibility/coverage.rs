@@ -55,7 +55,7 @@ pub(crate) struct CoveringSolids {
 
 impl CoveringSolids {
     /// The solids, if none is in doubt.
-    pub(crate) fn known(&self) -> Option<&[usize]> {
+    pub(crate) fn certain(&self) -> Option<&[usize]> {
         (self.tally.unknown == 0).then_some(&self.solids)
     }
 
@@ -67,9 +67,9 @@ impl CoveringSolids {
     fn change(&mut self, solid: usize, from: Cover, to: Cover) {
         self.tally.change(from, to);
         match (self.solids.binary_search(&solid), to) {
-            (Err(place), Cover::Certainly) => self.solids.insert(place, solid),
-            (Ok(place), Cover::Not | Cover::Unknown) => {
-                self.solids.remove(place);
+            (Err(index), Cover::Certainly) => self.solids.insert(index, solid),
+            (Ok(index), Cover::Not | Cover::Unknown) => {
+                self.solids.remove(index);
             }
             _ => {}
         }

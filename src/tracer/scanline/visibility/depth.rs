@@ -18,10 +18,10 @@ pub(crate) struct Settled {
     near: Vec<Near>,
 }
 
-/// A solid of a test, by its place there, and a lower bound on its depth in an interval.
+/// A solid of a test, by its index in the test, and a lower bound on its depth in an interval.
 struct Near {
-    place: usize,
-    least: f64,
+    index: usize,
+    lower: f64,
 }
 
 /// What is in front of all else in some columns.
@@ -62,9 +62,9 @@ impl Settled {
             Visible::First(test) => {
                 let test = depth_tests.test(test);
                 let first = self.near.len();
-                let places = 0..test.solids.len();
+                let indices = 0..test.solids.len();
                 self.near
-                    .extend(places.map(|place| Near { place, least: 0.0 }));
+                    .extend(indices.map(|index| Near { index, lower: 0.0 }));
                 self.add_first(frame, (depth_tests, &test), first, y, columns);
                 self.near.truncate(first);
             }
@@ -83,7 +83,7 @@ impl Settled {
         let (depth_tests, test) = tests;
         let end = self.near.len();
         let before = match front(frame, test, &mut self.near[first..], y, columns) {
-            Front::Solid(place) => return self.push(columns, test.solids[place].shown),
+            Front::Solid(index) => return self.push(columns, test.solids[index].shown),
             Front::Rest => return self.add(frame, depth_tests, test.rest, y, columns),
             Front::Before(depth) => depth,
         };
@@ -91,9 +91,9 @@ impl Settled {
             return self.push(columns, Shown::Unknown);
         };
         for i in first..end {
-            let Near { place, least } = self.near[i];
-            if least <= before {
-                self.near.push(Near { place, least });
+            let Near { index, lower } = self.near[i];
+            if lower <= before {
+                self.near.push(Near { index, lower });
             }
         }
         for half in halves {
@@ -121,7 +121,7 @@ fn front(
     let view = frame.solids(test.mirrored);
     let surface = frame.surface.as_ref().map(|surface| surface.depth_at(y));
     let interval = Rectangle {
-        x: [columns.0, columns.1 - 1].map(|column| frame.grid.place(column)),
+        x: [columns.0, columns.1 - 1].map(|column| frame.grid.coordinate(column)),
         y: [y, y],
     };
     // The candidate is what ends first; it is in front if all others begin behind that.
@@ -129,8 +129,8 @@ fn front(
     let rest = surface.filter(|_| test.surface).unwrap_or(nothing);
     let mut candidate = (Front::Rest, rest);
     let mut others_begin = f64::INFINITY;
-    for Near { place, least: kept } in near {
-        let other = &test.solids[*place];
+    for Near { index, lower: kept } in near {
+        let other = &test.solids[*index];
         let solid = &view.solids[other.solid];
         let support = solid.depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
@@ -143,33 +143,33 @@ fn front(
             *kept = *begins;
             continue;
         }
-        let (least, most) = solid.depth.bounds(other.front_face, interval);
-        *kept = least;
+        let (lower, upper) = solid.depth.bounds(other.front_face, interval);
+        *kept = lower;
         // The rays that the surface mirrors begin there: a solid before that is not met.
         if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)
-            && least <= to
+            && lower <= to
         {
-            if most >= from {
-                others_begin = others_begin.min(least.max(from));
+            if upper >= from {
+                others_begin = others_begin.min(lower.max(from));
             } else {
                 *kept = f64::INFINITY;
             }
             continue;
         }
-        if most < *ends_first {
+        if upper < *ends_first {
             others_begin = others_begin.min(*begins);
-            candidate = (Front::Solid(*place), (least, most));
+            candidate = (Front::Solid(*index), (lower, upper));
         } else {
-            others_begin = others_begin.min(least);
+            others_begin = others_begin.min(lower);
         }
     }
-    let (front, (_, most)) = candidate;
+    let (front, (_, upper)) = candidate;
     // Behind everything there is nothing.
     let is_alone = others_begin == f64::INFINITY;
-    if others_begin > most || (is_alone && matches!(front, Front::Rest)) {
+    if others_begin > upper || (is_alone && matches!(front, Front::Rest)) {
         front
     } else {
-        Front::Before(most)
+        Front::Before(upper)
     }
 }
 

@@ -14,7 +14,7 @@ pub(crate) fn visible(
     depth_tests: &mut DepthTests,
 ) -> Visible {
     let direct = frame.solids(false);
-    let Some(met) = coverage.direct.known() else {
+    let Some(met) = coverage.direct.certain() else {
         return Visible::UNKNOWN;
     };
     // What is above the surface hides it.
@@ -60,7 +60,7 @@ fn visible_surface(
         (Some(false), None) => return itself,
         (Some(false), Some(mirrored)) => mirrored,
     };
-    let Some(met) = coverage.mirrored.known() else {
+    let Some(met) = coverage.mirrored.certain() else {
         return Visible::UNKNOWN;
     };
     if met.is_empty() {

@@ -1,6 +1,6 @@
 //! Which of two solids is in front of the other wherever both are met.
 //!
-//! All eye rays go the same way. Two convex solids that a plane keeps apart are met on either side
+//! All eye rays have one direction. Two convex solids that a plane keeps apart are met on either side
 //! of it, so every ray that meets both meets first the one that it is on the side of before it
 //! crosses the plane. This needs no depth, and is known for a whole frame.
 
@@ -11,19 +11,19 @@ use crate::tracer::frame::looking;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
-/// Beyond so many solids there are too many pairs to ask for all of them in every frame.
+/// The largest number of solids for which all pairs are tested in every frame.
 const MOST: usize = 16;
 
 /// The order of the solids of a view.
 pub(crate) struct Separation<'f> {
-    /// The number of its solids; 0 where nothing is known.
+    /// The number of its solids; 0 if there are more than [`MOST`].
     count: usize,
-    /// For each pair, whether the first is in front of the second.
+    /// For each pair, whether the first is in front of the second, if a plane separates them.
     in_front: &'f [Option<bool>],
 }
 
 impl<'f> Separation<'f> {
-    /// Of the solids of `view` with these numbers.
+    /// The order of the solids of `view` with these numbers.
     pub(crate) fn new(view: &View<'_, Bounded>, solids: &[usize], arena: &'f Bump) -> Self {
         let count = if solids.len() <= MOST {
             solids.len()
@@ -33,15 +33,15 @@ impl<'f> Separation<'f> {
         let in_front = arena.alloc_slice_fill_copy(count * count, None);
         for i in 0..count {
             for j in 0..i {
-                let known = is_in_front(view, solids[i], solids[j]);
-                in_front[i * count + j] = known;
-                in_front[j * count + i] = known.map(|first| !first);
+                let order = is_in_front(view, solids[i], solids[j]);
+                in_front[i * count + j] = order;
+                in_front[j * count + i] = order.map(|first| !first);
             }
         }
         Separation { count, in_front }
     }
 
-    /// Which of `met` is in front of all others, if that is known.
+    /// The solid of `met` that is certainly in front of all others, if there is one.
     pub(crate) fn first(&self, met: &[usize]) -> Option<usize> {
         if let [only] = met {
             return Some(*only);
@@ -54,8 +54,7 @@ impl<'f> Separation<'f> {
     }
 }
 
-/// Whether solid `i` is in front of solid `j`; `None` where that is not known, or depends on the
-/// ray.
+/// Whether solid `i` is in front of solid `j`; `None` where no plane is found that separates them.
 fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
     let toward_j = match (view.spheres.get(i), view.spheres.get(j)) {
         (Some(a), Some(b)) => {
@@ -63,14 +62,15 @@ fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
             let gap = between.squared_length() - (a.radius + b.radius).squared();
             is_positive(gap).then_some(between)
         }
-        _ => apart_by_face(view, i, j).or_else(|| apart_by_face(view, j, i).map(|way| -way)),
+        _ => apart_by_face(view, i, j)
+            .or_else(|| apart_by_face(view, j, i).map(|direction| -direction)),
     }?;
-    let along = looking::<Bounded>().vector.dot(toward_j);
-    // Rays along the plane meet one of them only.
-    along.sign().ok().map(|sign| sign.is_gt())
+    let d_toward_j = looking::<Bounded>().vector.dot(toward_j);
+    // No ray parallel to the plane meets both.
+    d_toward_j.sign().ok().map(|sign| sign.is_gt())
 }
 
-/// The way from solid `i`, a tetrahedron, to solid `j` across a face that keeps them apart.
+/// The outward normal of a face of tetrahedron `i` whose plane separates it from solid `j`.
 fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<Bounded>> {
     let t = view.tetrahedra.get(i.checked_sub(view.spheres.len())?)?;
     (0..4).find_map(|face| {
@@ -80,8 +80,8 @@ fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<
         let is_beyond = match view.spheres.get(j) {
             Some(sphere) => {
                 let height = height(sphere.center);
-                let reach = sphere.radius.squared() * outward.squared_length();
-                is_positive(height) && is_positive(height.squared() - reach)
+                let limit = sphere.radius.squared() * outward.squared_length();
+                is_positive(height) && is_positive(height.squared() - limit)
             }
             None => {
                 let other = &view.tetrahedra[j - view.spheres.len()].solid;

@@ -6,7 +6,7 @@ use crate::tracer::scanline::write::paint::PaintNumber;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     Paint(PaintNumber),
-    /// A sphere that is shaded, by its place among the solids or those in the mirror.
+    /// A sphere that is shaded, by its index among the solids seen directly or in the mirror.
     Sphere {
         mirrored: bool,
         solid: u32,
@@ -71,7 +71,7 @@ impl Packed {
 /// A solid that may be in front.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
-    /// Its place among the solids or those in the mirror.
+    /// Its index among the solids seen directly or in the mirror.
     pub(crate) solid: usize,
     /// The index of the front face that is seen of a tetrahedron, if known.
     pub(crate) front_face: Option<usize>,

@@ -24,8 +24,8 @@ impl Paint {
 
     /// A vector of samples, of which the first is so many on from a pixel's first.
     #[inline(always)]
-    fn from<S: Simd, V: SimdFloat<S, Element = f32>>(&self, simd: S, place: usize) -> V {
-        let channel = place % 3;
+    fn from<S: Simd, V: SimdFloat<S, Element = f32>>(&self, simd: S, index: usize) -> V {
+        let channel = index % 3;
         V::from_slice(simd, &self.samples[channel..channel + V::LEN])
     }
 
@@ -104,8 +104,8 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
     let last = samples.len() - width;
     store::<S, V>(simd, samples, 0, paint);
     if last <= 4 * width {
-        for place in [width, 2 * width, 3 * width, last] {
-            store::<S, V>(simd, samples, place.min(last), paint);
+        for index in [width, 2 * width, 3 * width, last] {
+            store::<S, V>(simd, samples, index.min(last), paint);
         }
         return;
     }
@@ -125,16 +125,16 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
     }
 }
 
-/// Stores a vector of samples at `place`.
+/// Stores a vector of samples at `index`.
 #[inline(always)]
 fn store<S: Simd, V: SimdFloat<S, Element = f32>>(
     simd: S,
     samples: &mut [f32],
-    place: usize,
+    index: usize,
     paint: &Paint,
 ) {
-    let vector = paint.from::<S, V>(simd, place);
-    vector.store_slice(&mut samples[place..place + V::LEN]);
+    let vector = paint.from::<S, V>(simd, index);
+    vector.store_slice(&mut samples[index..index + V::LEN]);
 }
 
 #[cfg(test)]
@@ -152,12 +152,12 @@ mod tests {
                     let mut samples = vec![1.0; start + 3 * length + 20];
                     let filled = &mut samples[start..start + 3 * length];
                     dispatch!(level, simd => fill(simd, filled, &paint));
-                    for (place, sample) in samples.into_iter().enumerate() {
-                        let expected = match place.checked_sub(start) {
-                            Some(place) if place < 3 * length => [0.25, 0.5, 0.75][place % 3],
+                    for (index, sample) in samples.into_iter().enumerate() {
+                        let expected = match index.checked_sub(start) {
+                            Some(index) if index < 3 * length => [0.25, 0.5, 0.75][index % 3],
                             _ => 1.0,
                         };
-                        assert_eq!(sample, expected, "{length} pixels from {start}: {place}");
+                        assert_eq!(sample, expected, "{length} pixels from {start}: {index}");
                     }
                 }
             }

@@ -52,8 +52,8 @@ impl<'r> Row<'r> {
 
     /// What is remembered of the row.
     fn history(&mut self) -> Option<&mut RowHistory> {
-        let place = (self.number - self.first) as usize;
-        self.history.as_mut().map(|history| &mut history[place])
+        let index = (self.number - self.first) as usize;
+        self.history.as_mut().map(|history| &mut history[index])
     }
 
     /// One colour in all columns.
@@ -65,9 +65,9 @@ impl<'r> Row<'r> {
         // It is lent to the history, which calls back.
         match self.history.take() {
             Some(history) => {
-                let place = (self.number - self.first) as usize;
+                let index = (self.number - self.first) as usize;
                 let write = |columns| self.extend_pending(columns, paint);
-                history[place].fill(columns, paint.bits(), write);
+                history[index].fill(columns, paint.bits(), write);
                 self.history = Some(history);
             }
             None => self.extend_pending(columns, paint),
@@ -103,11 +103,11 @@ impl<'r> Row<'r> {
         in_shadow: &'r Paint,
         scratch: &mut RunScratch,
     ) {
-        let known = both(columns, sphere_columns.known);
-        scratch.doubts.extend(columns.0..known.0);
-        scratch.doubts.extend(known.1..columns.1);
+        let shadeable = both(columns, sphere_columns.shadeable);
+        scratch.doubts.extend(columns.0..shadeable.0);
+        scratch.doubts.extend(shadeable.1..columns.1);
         let facing = match sphere_columns.facing {
-            _ if !shaded.sphere.shadows => Some((known, true)),
+            _ if !shaded.sphere.shadows => Some((shadeable, true)),
             facing => facing,
         };
         let mut shade = |row: &mut Self, columns, is_facing| {
@@ -120,13 +120,13 @@ impl<'r> Row<'r> {
             );
         };
         match facing {
-            None => shade(self, known, false),
+            None => shade(self, shadeable, false),
             Some((inside, inside_faces)) => {
-                let inside = both(known, inside);
+                let inside = both(shadeable, inside);
                 let parts = [
-                    ((known.0, inside.0), !inside_faces),
+                    ((shadeable.0, inside.0), !inside_faces),
                     (inside, inside_faces),
-                    ((inside.1, known.1), !inside_faces),
+                    ((inside.1, shadeable.1), !inside_faces),
                 ];
                 for (columns, faces) in parts {
                     match faces {
@@ -139,7 +139,7 @@ impl<'r> Row<'r> {
         }
     }
 
-    /// Columns of a sphere in which all is known that f64 has to know to shade it.
+    /// Columns of a sphere in which all is shadeable that f64 has to know to shade it.
     fn shade_known(
         &mut self,
         columns: Columns,
@@ -154,8 +154,8 @@ impl<'r> Row<'r> {
         self.mark_written();
         scratch.casters.clear();
         if sphere_columns.casters != 0 {
-            let place = |column| self.grid.place(column);
-            let ends = (place(columns.0), place(columns.1 - 1));
+            let x = |column| self.grid.coordinate(column);
+            let ends = (x(columns.0), x(columns.1 - 1));
             let hits = shaded.sphere.hit_box(ends, (self.y, self.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
@@ -207,10 +207,10 @@ impl<'r> Row<'r> {
         for column in columns {
             self.mark_written();
             let ((decision, color), rung) = pixels.pixel(column, self.number);
-            let place = self.pixels((column, column)).start;
-            self.samples[3 * place..3 * place + 3].copy_from_slice(&color);
+            let index = self.pixels((column, column)).start;
+            self.samples[3 * index..3 * index + 3].copy_from_slice(&color);
             if let Some(decisions) = &mut self.decisions {
-                decisions[place] = decision;
+                decisions[index] = decision;
             }
             self.in_doubt.count(rung);
         }
