@@ -253,9 +253,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         match shows {
             Shown::Paint(paint) => row.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
-                if let Body::Sphere(shaded) =
-                    &self.frame.solids(mirrored).solids[solid as usize].body
-                {
+                if let Body::Sphere(shaded) = &self.frame.solids(mirrored).solid(solid).body {
                     let paint = &self.frame.paints[shaded.in_shadow];
                     let Shade { cache, run } = shade;
                     let sphere_columns = cache.of(shaded, row.number, self.level, self.frame.grid);

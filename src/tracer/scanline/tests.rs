@@ -114,7 +114,7 @@ fn spans<P: RowPixels>(
 fn words(visible: Visible, tests: &DepthTests) -> String {
     let shown = |shown: Shown| match shown {
         Shown::Paint(paint) => format!("paint {}", paint.0),
-        Shown::Sphere { mirrored, solid } => format!("sphere {solid} {mirrored}"),
+        Shown::Sphere { mirrored, solid } => format!("sphere {} {mirrored}", solid.0),
         Shown::Unknown => "unknown".to_owned(),
     };
     match visible {
@@ -126,7 +126,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
                 .map(|solid| {
                     format!(
                         "{} {:?}: {}",
-                        solid.solid,
+                        solid.solid.0,
                         solid.front_face,
                         shown(solid.shown)
                     )
@@ -211,8 +211,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                                 Shown::Sphere { mirrored, solid },
                                 Decision::Solid(_) | Decision::Mirrored(_),
                             ) => {
-                                let solids = tracer.frame.solids(mirrored).solids;
-                                let body = &solids[solid as usize].body;
+                                let body = &tracer.frame.solids(mirrored).solid(solid).body;
                                 matches!(body, Body::Sphere(sphere) if sphere.lit == lit(decision))
                             }
                             (Shown::Sphere { .. }, _) => false,

@@ -16,13 +16,18 @@ pub(crate) enum RegionKind {
     Surface,
     /// Their points on a receiver are in one shadow.
     Shadow(Receiver),
-    /// Their eye rays enter the first of two front faces last. The region ends at the crease between them.
+    /// Their eye rays enter the first of two front faces last, and not the second.
     Crease,
-    /// Their eye rays meet a solid, by its index among those seen directly.
-    Direct(usize),
-    /// Their mirrored rays meet a solid, by its index among those seen in the mirror.
-    Mirrored(usize),
+    /// Their eye rays meet a solid.
+    Direct(SolidIndex),
+    /// Their mirrored rays meet a solid.
+    Mirrored(SolidIndex),
 }
+
+/// The index of a solid among those of a frame that are seen directly, or among those that are seen
+/// in the mirror. It is not the solid's number in the scene: most solids of a crowd are not seen.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct SolidIndex(pub(crate) u32);
 
 /// The number of what shadows fall on: the surface or a front face.
 #[derive(Clone, Copy)]

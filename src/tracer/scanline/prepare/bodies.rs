@@ -13,7 +13,7 @@ use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::RegionKind;
+use crate::tracer::scanline::edges::table::{RegionKind, SolidIndex};
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
@@ -40,14 +40,14 @@ pub(crate) fn with_bodies<'f>(
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let bodies = Bodies::new(picture, view, mirrored);
     let mut solids = Growing::with_capacity_in(numbers.len(), arena);
-    for (index, solid) in outlines.all.into_iter().enumerate() {
+    for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
         let body = bodies.of(&solid, parts);
-        let edge = if mirrored {
+        let kind = if mirrored {
             RegionKind::Mirrored(index)
         } else {
             RegionKind::Direct(index)
         };
-        parts.edge_table.add(solid.outline, edge);
+        parts.edge_table.add(solid.outline, kind);
         solids.push(PreparedSolid {
             side: solid.side,
             depth: solid.depth,

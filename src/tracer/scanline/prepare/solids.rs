@@ -1,7 +1,7 @@
 //! The solids of a frame, prepared for its rows: seen directly, or in the mirror.
 
 use crate::scene::Side;
-use crate::tracer::scanline::edges::table::Receiver;
+use crate::tracer::scanline::edges::table::{Receiver, SolidIndex};
 use crate::tracer::scanline::prepare::depth::Depth;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::visibility::separation::Separation;
@@ -13,6 +13,12 @@ pub(crate) struct PreparedSolids<'f> {
     pub(crate) solids: &'f [PreparedSolid<'f>],
     /// The order of the solids that a plane separates.
     pub(crate) separation: Separation<'f>,
+}
+
+impl<'f> PreparedSolids<'f> {
+    pub(crate) fn solid(&self, SolidIndex(index): SolidIndex) -> &PreparedSolid<'f> {
+        &self.solids[index as usize]
+    }
 }
 
 /// A solid that may be seen.

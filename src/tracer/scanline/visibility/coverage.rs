@@ -3,7 +3,7 @@
 //! Coverage follows the edges of a row from the left to the right: each edge changes one entry, and
 //! nothing is computed anew for a column.
 
-use crate::tracer::scanline::edges::table::{EdgeTable, Receiver, RegionKind};
+use crate::tracer::scanline::edges::table::{EdgeTable, Receiver, RegionKind, SolidIndex};
 
 /// How a region covers the present column.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -49,13 +49,13 @@ impl Tally {
 /// The solids that eye rays or mirrored rays meet in a column, by increasing index.
 #[derive(Default)]
 pub(crate) struct CoveringSolids {
-    solids: Vec<usize>,
+    solids: Vec<SolidIndex>,
     tally: Tally,
 }
 
 impl CoveringSolids {
     /// The solids, if none is in doubt.
-    pub(crate) fn certain(&self) -> Option<&[usize]> {
+    pub(crate) fn certain(&self) -> Option<&[SolidIndex]> {
         (self.tally.unknown == 0).then_some(&self.solids)
     }
 
@@ -64,7 +64,7 @@ impl CoveringSolids {
         self.tally = Tally::default();
     }
 
-    fn change(&mut self, solid: usize, from: Cover, to: Cover) {
+    fn change(&mut self, solid: SolidIndex, from: Cover, to: Cover) {
         self.tally.change(from, to);
         match (self.solids.binary_search(&solid), to) {
             (Err(index), Cover::Certainly) => self.solids.insert(index, solid),

@@ -18,7 +18,7 @@ pub(crate) struct Settled {
     near: Vec<Near>,
 }
 
-/// A solid of a test, by its index in the test, and a lower bound on its depth in an interval.
+/// A candidate, by its index in the test, and a lower bound on its depth in an interval.
 struct Near {
     index: usize,
     lower: f64,
@@ -26,8 +26,8 @@ struct Near {
 
 /// What is in front of all else in some columns.
 enum Front {
-    /// One of the solids in question.
-    Solid(usize),
+    /// The candidate of this index in the test.
+    Candidate(usize),
     /// The surface, or where that is not met either, the background.
     Rest,
     /// Not known: it begins before this depth.
@@ -83,7 +83,7 @@ impl Settled {
         let (depth_tests, test) = tests;
         let end = self.near.len();
         let before = match front(frame, test, &mut self.near[first..], y, columns) {
-            Front::Solid(index) => return self.push(columns, test.solids[index].shown),
+            Front::Candidate(index) => return self.push(columns, test.solids[index].shown),
             Front::Rest => return self.add(frame, depth_tests, test.rest, y, columns),
             Front::Before(depth) => depth,
         };
@@ -131,14 +131,14 @@ fn front(
     let mut others_begin = f64::INFINITY;
     for Near { index, lower: kept } in near {
         let other = &test.solids[*index];
-        let solid = &view.solids[other.solid];
+        let solid = view.solid(other.solid);
         let support = solid.depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
         // Where they are the same sphere, or faces in the same plane, the first is seen.
-        if let Front::Solid(first) = front
+        if let Front::Candidate(first) = front
             && let first = &test.solids[*first]
             && support.is_some()
-            && view.solids[first.solid].depth.support(first.front_face) == support
+            && view.solid(first.solid).depth.support(first.front_face) == support
         {
             *kept = *begins;
             continue;
@@ -158,7 +158,7 @@ fn front(
         }
         if upper < *ends_first {
             others_begin = others_begin.min(*begins);
-            candidate = (Front::Solid(*index), (lower, upper));
+            candidate = (Front::Candidate(*index), (lower, upper));
         } else {
             others_begin = others_begin.min(lower);
         }

@@ -1,6 +1,7 @@
 //! Visibility: from the regions that cover a gap to what the gap shows.
 
 use crate::scene::Side;
+use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
@@ -18,7 +19,7 @@ pub(crate) fn visible(
         return Visible::UNKNOWN;
     };
     // What is above the surface hides it.
-    let hides = |&solid: &usize| direct.solids[solid].side == Side::Above;
+    let hides = |&solid: &SolidIndex| direct.solid(solid).side == Side::Above;
     let meets_surface = if met.iter().any(hides) {
         Some(false)
     } else {
@@ -68,7 +69,7 @@ fn visible_surface(
     }
     // A solid that goes through the surface may be met before the surface, where its part
     // below would be mirrored: the test of depth decides.
-    let goes_through = |&solid: &usize| mirrored.solids[solid].side == Side::Across;
+    let goes_through = |&solid: &SolidIndex| mirrored.solid(solid).side == Side::Across;
     if !met.iter().any(goes_through)
         && let Some(solid) = mirrored.separation.first(met)
     {
@@ -81,13 +82,13 @@ fn visible_surface(
 }
 
 /// What a gap shows where a solid is in front.
-fn candidate(view: &PreparedSolids<'_>, solid: usize, coverage: &Coverage) -> Candidate {
-    let (front_face, shown) = match &view.solids[solid].body {
+fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) -> Candidate {
+    let (front_face, shown) = match &view.solid(solid).body {
         Body::Flat(paint) => (None, Shown::Paint(*paint)),
         Body::Sphere(_) => {
             let shown = Shown::Sphere {
                 mirrored: view.mirrored,
-                solid: solid as u32,
+                solid,
             };
             (None, shown)
         }

@@ -8,6 +8,7 @@ use bumpalo::Bump;
 
 use crate::number::{Bounded, Real};
 use crate::tracer::frame::looking;
+use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
@@ -23,7 +24,7 @@ pub(crate) struct Separation<'f> {
 }
 
 impl<'f> Separation<'f> {
-    /// The order of the solids of `view` with these numbers.
+    /// The order of the solids of `view` with these numbers in the scene.
     pub(crate) fn new(view: &View<'_, Bounded>, solids: &[usize], arena: &'f Bump) -> Self {
         let count = if solids.len() <= MOST {
             solids.len()
@@ -42,14 +43,15 @@ impl<'f> Separation<'f> {
     }
 
     /// The solid of `met` that is certainly in front of all others, if there is one.
-    pub(crate) fn first(&self, met: &[usize]) -> Option<usize> {
+    pub(crate) fn first(&self, met: &[SolidIndex]) -> Option<SolidIndex> {
         if let [only] = met {
             return Some(*only);
         }
-        let is_before = |a: usize, b: usize| {
-            a == b || self.in_front.get(a * self.count + b) == Some(&Some(true))
+        let is_before = |a: SolidIndex, b: SolidIndex| {
+            let pair = a.0 as usize * self.count + b.0 as usize;
+            a == b || self.in_front.get(pair) == Some(&Some(true))
         };
-        let is_first = |&a: &usize| met.iter().all(|&b| is_before(a, b));
+        let is_first = |&a: &SolidIndex| met.iter().all(|&b| is_before(a, b));
         met.iter().copied().find(is_first)
     }
 }

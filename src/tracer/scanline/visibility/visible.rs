@@ -1,17 +1,18 @@
 //! What gaps and spans show: the answer of `resolve`, as it is cached.
 
+use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
 /// What neighbouring columns show.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     Paint(PaintNumber),
-    /// A sphere that is shaded, by its index among the solids seen directly or in the mirror.
+    /// A sphere that is shaded.
     Sphere {
         mirrored: bool,
-        solid: u32,
+        solid: SolidIndex,
     },
-    /// Unknown: each pixel is asked by itself.
+    /// Every pixel is decided by itself.
     Unknown,
 }
 
@@ -39,7 +40,7 @@ impl Packed {
         let (kind, number) = match visible {
             Visible::Only(Shown::Unknown) => (1, 0),
             Visible::Only(Shown::Paint(PaintNumber(number))) => (2, number),
-            Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid),
+            Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid.0),
             Visible::First(number) => (5, number),
         };
         Packed(kind << 32 | u64::from(number))
@@ -60,7 +61,7 @@ impl Packed {
             2 => Visible::Only(Shown::Paint(PaintNumber(number))),
             kind @ (3 | 4) => Visible::Only(Shown::Sphere {
                 mirrored: kind == 4,
-                solid: number,
+                solid: SolidIndex(number),
             }),
             5 => Visible::First(number),
             _ => Visible::UNKNOWN,
@@ -71,8 +72,7 @@ impl Packed {
 /// A solid that may be in front.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
-    /// Its index among the solids seen directly or in the mirror.
-    pub(crate) solid: usize,
+    pub(crate) solid: SolidIndex,
     /// The index of the front face that is seen of a tetrahedron, if known.
     pub(crate) front_face: Option<usize>,
     /// What it shows where it is in front.
