@@ -42,9 +42,14 @@ impl<'f> Region<'f> {
         }
     }
 
-    /// What it has in common with the half-planes of another region.
-    pub(crate) fn and(mut self, other: &Region<'f>, arena: &'f Bump) -> Self {
-        let both = self.half_planes.iter().chain(other.half_planes);
+    /// The half-planes that the region is an intersection of, besides its ellipse.
+    pub(crate) fn half_planes(&self) -> &'f [HalfPlane] {
+        self.half_planes
+    }
+
+    /// The intersection with these half-planes.
+    pub(crate) fn clipped(mut self, half_planes: &[HalfPlane], arena: &'f Bump) -> Self {
+        let both = self.half_planes.iter().chain(half_planes);
         self.half_planes = collect(arena, both.copied());
         self
     }

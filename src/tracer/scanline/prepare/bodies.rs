@@ -200,9 +200,10 @@ impl<'p, 's> Bodies<'p, 's> {
         let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
-        let within = |shadow: Region<'f>| shadow.and(&solid.outline, arena);
+        let outline = solid.outline.half_planes();
+        let clipped = |shadow: Region<'f>| shadow.clipped(outline, arena);
         let mut shadows = Growing::new_in(arena);
-        shadows.extend(solids.chain(surface).map(within));
+        shadows.extend(solids.chain(surface).map(clipped));
         shadows
     }
 }
