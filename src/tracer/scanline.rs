@@ -89,8 +89,7 @@ pub(super) use grid::ROWS;
 pub(super) use precision::Precision;
 use prepare::prepared::Prepared;
 use prepare::solids::Body;
-use shade::columns::SphereCache;
-use shade::run::RunScratch;
+use shade::span::SpanShader;
 use visibility::coverage::Coverage;
 use visibility::depth::Settled;
 use visibility::resolve::visible;
@@ -111,20 +110,13 @@ pub(super) struct RowTracer<'f, P> {
     precision: Precision,
 }
 
-/// What the tracing of a row needs, kept for the next.
+/// What the tracing of a row needs, kept from row to row.
 #[derive(Default)]
 pub(super) struct Scratch {
     active: ActiveEdges,
     depth_tests: DepthTests,
     settled: Settled,
-    shade: Shade,
-}
-
-/// What the shading of spheres needs, kept for the next.
-#[derive(Default)]
-struct Shade {
-    cache: SphereCache,
-    run: RunScratch,
+    shader: SpanShader,
 }
 
 impl<'f, P: RowPixels> RowTracer<'f, P> {
@@ -156,7 +148,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             .active
             .begin(&self.frame.edge_table, self.frame.grid);
         scratch.depth_tests.clear();
-        scratch.shade.cache.begin(self.frame.shaded_spheres);
+        scratch.shader.begin(self.frame.shaded_spheres);
     }
 
     /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
@@ -221,26 +213,32 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             active,
             depth_tests,
             settled,
-            shade,
+            shader,
         } = scratch;
         if depth_tests.is_full() {
             depth_tests.clear();
             active.forget();
         }
-        let look = |column: &Coverage| visible(frame, column, depth_tests);
-        active.enter(row.number, &frame.edge_table, self.level, frame.grid, look);
+        let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
+        active.enter(
+            row.number,
+            &frame.edge_table,
+            self.level,
+            frame.grid,
+            resolve,
+        );
         let mut from = 0;
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);
             match visible {
                 // The span has no columns in this row.
                 _ if from == to => {}
-                Visible::Only(shows) => self.write(row, (from, to), shows, shade),
+                Visible::Only(shows) => self.write(row, (from, to), shows, shader),
                 Visible::First(_) => {
                     let columns = (from, to);
                     let parts = settled.settle(frame, depth_tests, visible, row.y, columns);
                     for (columns, shows) in parts {
-                        self.write(row, columns, shows, shade);
+                        self.write(row, columns, shows, shader);
                     }
                 }
             }
@@ -248,22 +246,23 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         }
     }
 
-    /// Columns that all show the same.
-    fn write<'r>(&'r self, row: &mut Row<'r>, columns: Columns, shows: Shown, shade: &mut Shade) {
+    /// Writes columns that all show the same.
+    fn write<'r>(
+        &'r self,
+        row: &mut Row<'r>,
+        columns: Columns,
+        shows: Shown,
+        shader: &mut SpanShader,
+    ) {
         match shows {
             Shown::Paint(paint) => row.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
                 if let Body::Sphere(shaded) = &self.frame.solids(mirrored).solid(solid).body {
-                    let paint = &self.frame.paints[shaded.in_shadow];
-                    let Shade { cache, run } = shade;
-                    let sphere_columns = cache.of(shaded, row.number, self.level, self.frame.grid);
-                    row.shade(columns, shaded, &sphere_columns, paint, run);
-                    if !run.doubts.is_empty() {
-                        row.ask(run.doubts.drain(..), self.pixels);
-                    }
+                    let in_shadow = &self.frame.paints[shaded.in_shadow];
+                    shader.shade(row, columns, shaded, in_shadow, self.pixels);
                 }
             }
-            Shown::Unknown => row.ask(columns.0..columns.1, self.pixels),
+            Shown::Unknown => row.decide(columns.0..columns.1, self.pixels),
         }
     }
 }

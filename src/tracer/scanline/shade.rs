@@ -8,6 +8,7 @@ pub(super) mod light;
 pub(super) mod policy;
 pub(super) mod run;
 pub(super) mod shaded;
+pub(super) mod span;
 pub(super) mod sphere;
 #[cfg(test)]
 mod tests;

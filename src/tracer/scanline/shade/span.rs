@@ -1,0 +1,118 @@
+//! A span that shows a sphere: columns in shadow are filled, and all others are shaded or decided one
+//! by one.
+
+use fearless_simd::dispatch;
+
+use crate::tracer::ladder::Pixels;
+use crate::tracer::scanline::grid::Columns;
+use crate::tracer::scanline::precision::Precision;
+use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of};
+use crate::tracer::scanline::shade::policy::Certified;
+use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
+use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::write::paint::Paint;
+use crate::tracer::scanline::write::row::Row;
+
+/// What the shading of spheres needs, kept from span to span.
+#[derive(Default)]
+pub(crate) struct SpanShader {
+    cache: SphereCache,
+    scratch: RunScratch,
+}
+
+impl SpanShader {
+    /// Prepares for so many spheres of a frame.
+    pub(crate) fn begin(&mut self, count: usize) {
+        self.cache.begin(count);
+    }
+
+    /// Writes columns that show a sphere; `in_shadow` is its paint in shadow.
+    pub(crate) fn shade<'r>(
+        &mut self,
+        row: &mut Row<'r>,
+        columns: Columns,
+        shaded: &ShadedSphere<'_>,
+        in_shadow: &'r Paint,
+        pixels: &impl Pixels,
+    ) {
+        let sphere = self.cache.of(shaded, row.number, row.level, row.grid);
+        let shadeable = both(columns, sphere.shadeable);
+        self.scratch.doubts.extend(columns.0..shadeable.0);
+        self.scratch.doubts.extend(shadeable.1..columns.1);
+        match sphere.facing {
+            _ if !shaded.sphere.shadows => {
+                self.shade_run(row, shadeable, shaded, (&sphere, true), in_shadow);
+            }
+            None => self.shade_run(row, shadeable, shaded, (&sphere, false), in_shadow),
+            Some((inside, inside_faces)) => {
+                let inside = both(shadeable, inside);
+                let parts = [
+                    ((shadeable.0, inside.0), !inside_faces),
+                    (inside, inside_faces),
+                    ((inside.1, shadeable.1), !inside_faces),
+                ];
+                for (columns, faces) in parts {
+                    match faces {
+                        _ if columns.0 == columns.1 => {}
+                        true => self.shade_run(row, columns, shaded, (&sphere, true), in_shadow),
+                        false => row.fill(columns, in_shadow),
+                    }
+                }
+            }
+        }
+        if !self.scratch.doubts.is_empty() {
+            row.decide(self.scratch.doubts.drain(..), pixels);
+        }
+    }
+
+    /// Shades columns that are all shadeable.
+    fn shade_run(
+        &mut self,
+        row: &mut Row<'_>,
+        columns: Columns,
+        shaded: &ShadedSphere<'_>,
+        (sphere, is_facing): (&SphereColumns, bool),
+        in_shadow: &Paint,
+    ) {
+        if columns.0 == columns.1 {
+            return;
+        }
+        row.mark_written();
+        let casters_near = &mut self.scratch.casters;
+        casters_near.clear();
+        if sphere.casters != 0 {
+            let x = |column| row.grid.coordinate(column);
+            let ends = (x(columns.0), x(columns.1 - 1));
+            let hits = shaded.sphere.hit_box(ends, (row.y, row.y));
+            let casters = shaded.casters.iter().enumerate();
+            let near = casters.filter(|(number, caster)| {
+                sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)
+            });
+            casters_near.extend(near.map(|(number, _)| number));
+        }
+        let range = row.pixels(columns);
+        let mut run = Run {
+            grid: row.grid,
+            y: row.y,
+            from: columns.0,
+            zones: sphere.zones,
+            bright: sphere.bright,
+            is_facing,
+            samples: &mut row.samples[3 * range.start..3 * range.end],
+            decisions: row.decisions.as_mut().map(|all| &mut all[range]),
+            in_shadow,
+            scratch: &mut self.scratch,
+        };
+        dispatch!(row.level, simd => match row.precision {
+            Precision::Bounded => shade::<_, Certified>(simd, shaded, &mut run),
+            Precision::Double => shade::<_, f64>(simd, shaded, &mut run),
+            Precision::Single => shade::<_, f32>(simd, shaded, &mut run),
+        });
+    }
+}
+
+/// The intersection of two ranges of columns; an empty one lies within `columns`.
+fn both(columns: Columns, others: Columns) -> Columns {
+    let from = others.0.clamp(columns.0, columns.1);
+    (from, others.1.clamp(from, columns.1))
+}
