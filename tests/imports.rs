@@ -1,5 +1,6 @@
-//! Promise: no file of the library imports one that imports it, in however many steps: it can be
-//! read from one end to the other.
+//! Promise: the library can be read from one end to the other. No file imports another one that
+//! imports the first, in however many steps. A `pub use` is an import, too, unless it passes on a name
+//! of the module's own children: that is the table of contents of what follows.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -105,9 +106,8 @@ fn paths(tree: &str) -> Vec<String> {
         .collect()
 }
 
-/// The module that a path in `module` leads to, and the name that it has there; `None` for other
-/// crates.
-fn place(module: &str, path: &str, files: &BTreeMap<String, String>) -> Option<(String, String)> {
+/// The module that a path in `module` leads to, and the rest of the path; `None` for other crates.
+fn resolve(module: &str, path: &str, files: &BTreeMap<String, String>) -> Option<(String, String)> {
     let mut base: Vec<&str> = module.split("::").filter(|part| !part.is_empty()).collect();
     let mut parts = path.split("::").peekable();
     match *parts.peek()? {
@@ -134,7 +134,7 @@ fn place(module: &str, path: &str, files: &BTreeMap<String, String>) -> Option<(
     })
 }
 
-/// For each module those that it takes names from.
+/// For each module the modules in which the names that it imports are defined.
 fn graph(files: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>> {
     let mut imported: Vec<(String, String, String)> = Vec::new();
     let mut passed_on: BTreeMap<(String, String), (String, String)> = BTreeMap::new();
@@ -155,14 +155,16 @@ fn graph(files: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>>
             let tree = statement[at..].split_once("use ").unwrap().1;
             for path in paths(tree) {
                 let Some((from, name)) =
-                    place(module, &path.replace(char::is_whitespace, ""), files)
+                    resolve(module, &path.replace(char::is_whitespace, ""), files)
                 else {
                     continue;
                 };
+                let is_child = module.is_empty() || from.starts_with(&format!("{module}::"));
+                if !(is_passed_on && is_child) {
+                    imported.push((module.clone(), from.clone(), name.clone()));
+                }
                 if is_passed_on {
                     passed_on.insert((module.clone(), name.clone()), (from, name));
-                } else {
-                    imported.push((module.clone(), from, name));
                 }
             }
         }
@@ -179,26 +181,27 @@ fn graph(files: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>>
     graph
 }
 
-/// A way from `module` back to a module on the way, if there is one.
+/// Whether a path along imports, continued from `module`, comes back to itself; if so, `path` ends
+/// with the circle.
 fn circle(
     module: &str,
     graph: &BTreeMap<String, BTreeSet<String>>,
-    way: &mut Vec<String>,
+    path: &mut Vec<String>,
     done: &mut BTreeSet<String>,
 ) -> bool {
-    if way.iter().any(|on_way| on_way == module) {
-        way.push(module.to_owned());
+    if path.iter().any(|on_path| on_path == module) {
+        path.push(module.to_owned());
         return true;
     }
     if done.contains(module) {
         return false;
     }
-    way.push(module.to_owned());
+    path.push(module.to_owned());
     let next = graph.get(module).into_iter().flatten();
-    if next.into_iter().any(|next| circle(next, graph, way, done)) {
+    if next.into_iter().any(|next| circle(next, graph, path, done)) {
         return true;
     }
-    way.pop();
+    path.pop();
     done.insert(module.to_owned());
     false
 }
@@ -214,11 +217,11 @@ fn no_import_leads_back() {
     );
     let mut done = BTreeSet::new();
     for module in graph.keys() {
-        let mut way = Vec::new();
+        let mut path = Vec::new();
         assert!(
-            !circle(module, &graph, &mut way, &mut done),
+            !circle(module, &graph, &mut path, &mut done),
             "{}",
-            way.join(" → ")
+            path.join(" → ")
         );
     }
 }
