@@ -410,7 +410,8 @@ impl Measurement<'_> {
         for named in &request.scenes {
             for &stage in &request.stages {
                 let frames = renderers::Frames {
-                    named,
+                    name: &named.name,
+                    scene: &named.scene,
                     stage,
                     angles: &self.angles,
                     tolerance: request.tolerance,

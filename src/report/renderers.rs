@@ -4,10 +4,9 @@
 use std::time::Instant;
 
 use super::measure::{Filler, Spread};
-use super::{NamedScene, ReportError};
-use crate::diagnosis::{Examination, Summary};
+use crate::diagnosis::{Examination, ExaminationError, Summary};
 use crate::difference::Difference;
-use crate::{Image, Render, Stage};
+use crate::{Image, Render, Scene, Stage};
 
 /// A renderer on a scene in a stage.
 #[derive(Clone, Debug)]
@@ -38,7 +37,9 @@ pub(super) struct Measured {
 
 /// What is measured on: a scene, a stage, the angles of the frames.
 pub(super) struct Frames<'a> {
-    pub(super) named: &'a NamedScene,
+    /// The scene's name.
+    pub(super) name: &'a str,
+    pub(super) scene: &'a Scene,
     pub(super) stage: Stage,
     pub(super) angles: &'a [f64],
     /// How far a sample may be from the one that a decision gives.
@@ -54,24 +55,23 @@ pub(super) fn measure(
     image: &mut Image,
     filler: &mut Filler,
     next: &mut dyn FnMut(&str),
-) -> Result<RendererRow, ReportError> {
+) -> Result<RendererRow, ExaminationError> {
     let name = renderer.name().to_owned();
-    let of_this = format!("{}, {name}", frames.named.name);
-    let scene = &frames.named.scene;
+    let of_this = format!("{}, {name}", frames.name);
     let (mut ms, mut fill_ms, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let (mut summary, mut difference) = (Summary::default(), Difference::default());
     let mut failure = None;
     for &alpha in frames.angles {
         next(&of_this);
         let start = Instant::now();
-        if let Err(error) = renderer.render(scene, frames.stage, alpha, image) {
+        if let Err(error) = renderer.render(frames.scene, frames.stage, alpha, image) {
             failure = Some(error.to_string());
             break;
         }
         // A clock that stood still must not make a ratio infinite.
         let time = start.elapsed().as_secs_f64().max(1e-9);
         let examination = Examination::new(
-            scene,
+            frames.scene,
             frames.stage,
             alpha,
             image,
@@ -97,7 +97,7 @@ pub(super) fn measure(
         (failure, _) => Err(failure.unwrap_or_else(|| "no frame".to_owned())),
     };
     Ok(RendererRow {
-        scene: frames.named.name.clone(),
+        scene: frames.name.to_owned(),
         stage: frames.stage,
         renderer: name,
         measured,
