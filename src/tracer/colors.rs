@@ -8,6 +8,10 @@ use crate::number::Bounded;
 use crate::scene::Scene;
 use crate::stage::Stage;
 
+/// So many solids are looked at behind a pixel: where thousands lie one behind the other, to look
+/// at all of them would take minutes.
+const NEAREST: usize = 32;
+
 /// What every decision that a stage knows looks like in a frame, in exact arithmetic.
 pub(crate) struct Colors<'f> {
     scene: &'f Scene,
@@ -59,15 +63,16 @@ impl Colors<'_> {
     }
 
     /// The decisions that the line of a pixel can lead to: those of solids and the surface that
-    /// reach as far as this pixel, whatever hides them there. The nearest solids come first.
+    /// reach as far as this pixel, whatever hides them there. The nearest solids come first, and
+    /// those behind very many others are left out.
     pub(crate) fn near(&self, pixel: (u32, u32)) -> impl Iterator<Item = Decision> + '_ {
         let picture = self.ladder.bounded();
-        let solids = picture.view.extents.at(pixel);
+        let solids = picture.view.extents.at(pixel).take(NEAREST);
         let surface = self
             .surface()
             .filter(|surface| surface.extent.holds(pixel.0, pixel.1));
         let mirrored = surface.and_then(|surface| surface.mirror.as_ref());
-        let mirrored = mirrored.map(|mirror| mirror.view.extents.at(pixel));
+        let mirrored = mirrored.map(|mirror| mirror.view.extents.at(pixel).take(NEAREST));
         self.of_solids(solids, Decision::Solid)
             .chain(surface.map(|_| SURFACE).into_iter().flatten())
             .chain(self.of_solids(mirrored.into_iter().flatten(), Decision::Mirrored))
