@@ -21,8 +21,13 @@
 //! assert_eq!(pixel.words, "shows the surface in shadow, where the background is seen");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Some mistakes are known, and what a picture with one of them looks like. Where such a picture
+//! explains the given one, it earns a [`Hint`] at what to look at in the code.
 
 mod fits;
+mod hint;
+mod hypotheses;
 mod pixel;
 mod verdict;
 mod words;
@@ -32,6 +37,8 @@ use crate::image::ImageError;
 use crate::tracer::{Colors, Decision, TraceError, with_colors};
 use crate::{Image, Kernel, Scene, Stage, Tracer, memory};
 use fits::{Candidates, is_within};
+pub use hint::Hint;
+use hypotheses::{Sample, hints_of_known_mistakes, is_scattered_with_shadow};
 pub use pixel::PixelDiagnosis;
 pub use verdict::{Summary, Verdict};
 use words::Words;
@@ -165,6 +172,21 @@ impl<'a> Examination<'a> {
             explanations,
             words,
         })
+    }
+
+    /// The mistakes that explain the picture, if it is explained by any that is known; `diagnosis`
+    /// is its own. Of several that explain one picture those are told whose pictures it is most like.
+    pub fn hints(&self, diagnosis: &Diagnosis) -> Vec<Hint> {
+        if diagnosis.summary.wrong() == 0 {
+            return Vec::new();
+        }
+        let frame = (self.scene, self.stage, self.alpha, self.image.size());
+        let sample = Sample::new(self.image, &self.truth, self.tolerance, self.scene);
+        let mut hints = hints_of_known_mistakes(frame, &self.truth, &sample);
+        if is_scattered_with_shadow(&diagnosis.verdicts, &self.decisions, self.image.size()) {
+            hints.push(Hint::ShadowAcne);
+        }
+        hints
     }
 
     fn words(&self, verdict: Verdict, explanations: &[Decision], truth: Decision) -> String {

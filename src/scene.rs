@@ -204,6 +204,26 @@ impl Scene {
         &self.tetrahedra
     }
 
+    /// The same scene in light that travels the opposite way.
+    pub(crate) fn with_light_reversed(&self) -> Scene {
+        let light = Light {
+            // No −0.
+            direction: DVec3::ZERO - self.light.direction,
+            ..self.light
+        };
+        let facts = Facts::new(
+            &self.spheres,
+            (&self.tetrahedra, self.facts.right_handed.clone()),
+            self.surface.as_ref(),
+            light.scaled_direction(),
+        );
+        Scene {
+            light,
+            facts,
+            ..self.clone()
+        }
+    }
+
     /// What exact arithmetic has decided about the scene.
     pub(crate) fn facts(&self) -> &Facts {
         &self.facts

@@ -15,7 +15,7 @@
 //! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
 //! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words;
-//!   `colors`: what other decisions would look like.
+//!   `colors`: what other decisions would look like; `mistaken`: what mistakes look like.
 
 mod arena;
 mod colors;
@@ -30,6 +30,7 @@ mod kernel;
 mod ladder;
 mod line;
 mod listing;
+mod mistaken;
 mod palette;
 mod pixel;
 pub(crate) mod pool;
@@ -61,6 +62,7 @@ use frame_work::{FrameWork, with_frame};
 pub use in_doubt::InDoubt;
 pub use kernel::Kernel;
 use ladder::{Pixels, RowPixels, Rung};
+pub(crate) use mistaken::{Far, Mistake, Mistaken, Toward, with_pixels};
 use pool::{Pool, lock};
 pub use progress::Progress;
 use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};

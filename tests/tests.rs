@@ -27,6 +27,7 @@ mod drivers;
 mod explain;
 mod fuzz;
 mod helpers;
+mod hints;
 mod image_files;
 mod imports;
 #[cfg(all(feature = "program", target_os = "linux"))]

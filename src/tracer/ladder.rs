@@ -110,7 +110,8 @@ impl<'f> FrameSetup<'f> {
 /// The pixels of a kernel whose number never leaves a doubt.
 pub(super) struct Plain<'f, R> {
     bounded: Picture<'f, Bounded>,
-    picture: Picture<'f, R>,
+    /// The frame in this number.
+    pub(super) picture: Picture<'f, R>,
 }
 
 impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {

@@ -58,6 +58,48 @@ pub(super) type Pixel = (Decision, [f32; 3]);
 /// What was decided, and the normal of a sphere in the light.
 type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
 
+/// Where solids are hit and what lies in shadow: as it is right, or as somebody has it who makes a
+/// mistake.
+pub(super) trait Rules<R: Real> {
+    /// The hit of the solid that a ray hits first.
+    fn hit(
+        &self,
+        _view: &View<'_, R>,
+        _solid: usize,
+        _ray: &Line<R>,
+        first: Hit<R>,
+    ) -> Result<Hit<R>, R::Doubt> {
+        Ok(first)
+    }
+
+    /// Whether a point of a solid is in shadow, in the mirror's view or in the direct one.
+    fn is_in_shadow(
+        &self,
+        picture: &Picture<'_, R>,
+        mirrored: bool,
+        solid: usize,
+        hit: &Hit<R>,
+    ) -> Result<bool, R::Doubt> {
+        picture.is_in_shadow(mirrored, solid, hit)
+    }
+
+    /// Whether the point of the surface that a pixel shows is in shadow.
+    fn surface_is_in_shadow(
+        &self,
+        picture: &Picture<'_, R>,
+        surface: &SeenSurface<'_, R>,
+        pixel: (u32, u32),
+        point: Vector<R>,
+    ) -> Result<bool, R::Doubt> {
+        picture.surface_is_in_shadow(surface, pixel, point)
+    }
+}
+
+/// Without a mistake.
+struct Right;
+
+impl<R: Real> Rules<R> for Right {}
+
 impl<'f, R: Real> Picture<'f, R> {
     /// `signs` and `extents` are those of the same frame.
     pub(super) fn new(
@@ -99,12 +141,17 @@ impl<'f, R: Real> Picture<'f, R> {
     /// What the pixel at `column` from the left and `row` from the bottom shows, and the normal
     /// there where it shows a sphere in the light: all else that is seen has one colour.
     pub(super) fn decide(&self, column: u32, row: u32) -> Decided<R> {
+        self.decide_by(&Right, column, row)
+    }
+
+    /// The same by other rules.
+    pub(super) fn decide_by(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
         match self.stage {
             Stage::Image => Ok((Decision::Quadrant(quadrant(column, row, self.size)), None)),
-            Stage::Spheres => self.solid_alone(column, row, SolidKinds::Spheres),
-            Stage::Tetrahedron => self.solid_alone(column, row, SolidKinds::Tetrahedra),
-            Stage::Shading => self.solid_alone(column, row, SolidKinds::All),
-            Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(column, row),
+            Stage::Spheres => self.solid_alone(rules, column, row, SolidKinds::Spheres),
+            Stage::Tetrahedron => self.solid_alone(rules, column, row, SolidKinds::Tetrahedra),
+            Stage::Shading => self.solid_alone(rules, column, row, SolidKinds::All),
+            Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(rules, column, row),
         }
     }
 
@@ -117,12 +164,10 @@ impl<'f, R: Real> Picture<'f, R> {
         column: u32,
         row: u32,
     ) -> Result<Option<[f32; 3]>, R::Doubt> {
-        let surface = self.surface.as_ref();
-        let mirror = surface.and_then(|surface| surface.mirror.as_ref());
-        let (view, seen) = match (decision, mirror) {
-            (Decision::Solid(seen), _) => (&self.view, seen),
+        let (view, seen) = match decision {
+            Decision::Solid(seen) => (self.view(false), seen),
             // The eye's ray goes on straight into the reflected scene.
-            (Decision::Mirrored(seen), Some(mirror)) => (&mirror.view, seen),
+            Decision::Mirrored(seen) => (self.view(true), seen),
             _ => return Ok(None),
         };
         let ray = self.eye_ray(column, row);
@@ -196,11 +241,18 @@ impl<'f, R: Real> Picture<'f, R> {
     }
 
     /// Stages 2 to 4: the first hit, without shadows.
-    fn solid_alone(&self, column: u32, row: u32, solids: SolidKinds) -> Decided<R> {
+    fn solid_alone(
+        &self,
+        rules: &impl Rules<R>,
+        column: u32,
+        row: u32,
+        solids: SolidKinds,
+    ) -> Decided<R> {
         let ray = self.eye_ray(column, row);
         let hit = self.view.first_hit((column, row), &ray, None, solids)?;
         Ok(match hit {
             Some((solid, hit)) => {
+                let hit = rules.hit(&self.view, solid, &ray, hit)?;
                 let lit = self.stage == Stage::Shading && hit.face.is_none();
                 (
                     Decision::Solid(seen(solid, &hit, false)),
@@ -212,11 +264,15 @@ impl<'f, R: Real> Picture<'f, R> {
     }
 
     /// Stages 5 to 7: the first hit among the solids and the surface.
-    fn traced(&self, column: u32, row: u32) -> Decided<R> {
+    fn traced(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
         let ray = self.eye_ray(column, row);
-        let hit = self
+        let first = self
             .view
             .first_hit((column, row), &ray, None, SolidKinds::All)?;
+        let hit = match first {
+            Some((solid, hit)) => Some((solid, rules.hit(&self.view, solid, &ray, hit)?)),
+            None => None,
+        };
         if let Some(surface) = self
             .surface
             .as_ref()
@@ -231,12 +287,12 @@ impl<'f, R: Real> Picture<'f, R> {
             };
             let contains = || surface.square.contains(point);
             if all(iter::once_with(hides).chain(iter::once_with(contains)))? {
-                return self.surface_at(surface, (column, row), depth, point);
+                return self.surface_at(rules, surface, (column, row), depth, point);
             }
         }
         Ok(match hit {
             Some((solid, hit)) => {
-                let in_shadow = self.in_shadow(&self.view, solid, &hit)?;
+                let in_shadow = rules.is_in_shadow(self, false, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);
                 (Decision::Solid(seen), normal_of(seen, &hit))
             }
@@ -266,17 +322,13 @@ impl<'f, R: Real> Picture<'f, R> {
     /// The surface where it is seen: in shadow, mirroring, or plain.
     fn surface_at(
         &self,
+        rules: &impl Rules<R>,
         surface: &SeenSurface<'_, R>,
         pixel: (u32, u32),
         depth: R,
         point: Vector<R>,
     ) -> Decided<R> {
-        let leaves = surface.square.support;
-        let to_light = self.view.ray_to_light(point, leaves);
-        if self
-            .view
-            .is_shadowed_by(surface.casters.at(pixel), &to_light)?
-        {
+        if rules.surface_is_in_shadow(self, surface, pixel, point)? {
             return Ok((Decision::SurfaceInShadow, None));
         }
         if let Some(mirror) = &surface.mirror {
@@ -284,14 +336,15 @@ impl<'f, R: Real> Picture<'f, R> {
             let ray = Line {
                 origin: point,
                 direction: looking(),
-                leaves: Some(leaves),
+                leaves: Some(surface.square.support),
             };
             if let Some((solid, hit)) =
                 mirror
                     .view
                     .first_hit(pixel, &ray, Some(depth), SolidKinds::All)?
             {
-                let in_shadow = self.in_shadow(&mirror.view, solid, &hit)?;
+                let hit = rules.hit(&mirror.view, solid, &ray, hit)?;
+                let in_shadow = rules.is_in_shadow(self, true, solid, &hit)?;
                 let seen = seen(solid, &hit, in_shadow);
                 return Ok((Decision::Mirrored(seen), normal_of(seen, &hit)));
             }
@@ -299,8 +352,32 @@ impl<'f, R: Real> Picture<'f, R> {
         Ok((Decision::Surface, None))
     }
 
+    /// Whether a point of the surface is in shadow.
+    fn surface_is_in_shadow(
+        &self,
+        surface: &SeenSurface<'_, R>,
+        pixel: (u32, u32),
+        point: Vector<R>,
+    ) -> Result<bool, R::Doubt> {
+        let to_light = self.view.ray_to_light(point, surface.square.support);
+        self.view
+            .is_shadowed_by(surface.casters.at(pixel), &to_light)
+    }
+
+    /// The mirror's view, or the direct one.
+    pub(super) fn view(&self, mirrored: bool) -> &View<'f, R> {
+        let mirror = self
+            .surface
+            .as_ref()
+            .and_then(|surface| surface.mirror.as_ref());
+        mirror
+            .filter(|_| mirrored)
+            .map_or(&self.view, |mirror| &mirror.view)
+    }
+
     /// Whether a point of a solid is in shadow.
-    fn in_shadow(&self, view: &View<'_, R>, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
+    fn is_in_shadow(&self, mirrored: bool, solid: usize, hit: &Hit<R>) -> Result<bool, R::Doubt> {
+        let view = self.view(mirrored);
         let ray = view.ray_to_light(hit.point, hit.support);
         let turned_away = || view.shading.facing_light(&hit.normal).map(Ordering::is_le);
         let casters = &self.scene.facts().casters;

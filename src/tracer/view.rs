@@ -329,7 +329,7 @@ impl<'f, R: Real> View<'f, R> {
 
     /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the
     /// light.
-    fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
+    pub(super) fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
         match self.spheres.get(solid) {
             Some(sphere) => sphere.is_ahead(ray),
             None => {

@@ -1,0 +1,230 @@
+//! Pictures as tracers make them that have one mistake: what a picture is held against to find out
+//! whether its tracer has it.
+//!
+//! They are made of the same first hits, intersections and colours as the true picture, in f64,
+//! pixel by pixel.
+
+use std::convert::Infallible;
+
+use super::arena::Arena;
+use super::ladder::{Pixels, Plain};
+use super::line::{Direction, Hit, Line};
+use super::pixel::{Picture, Rules, SeenSurface};
+use super::vector::Vector;
+use super::view::View;
+use crate::scene::Scene;
+use crate::stage::Stage;
+
+/// What is wrong about a tracer. The default is one that is right.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Mistake {
+    /// n·l has the wrong sign.
+    pub(crate) shading_reversed: bool,
+    /// Where solids stand that shade a point.
+    pub(crate) solids: Toward,
+    /// Where the surface is that shades a point of a solid.
+    pub(crate) surface: Toward,
+    /// A solid stands in its own light.
+    pub(crate) own_shadow: bool,
+    /// Which solids are hit where a ray leaves them.
+    pub(crate) far: Far,
+}
+
+/// Where something stands, seen from a point along the line to the light.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(crate) enum Toward {
+    #[default]
+    Light,
+    /// On the side that is away from the light.
+    Away,
+    /// Anywhere on the line.
+    Either,
+}
+
+/// Which solids are hit where a ray leaves them.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(crate) enum Far {
+    #[default]
+    None,
+    Spheres,
+    All,
+}
+
+/// A frame: a scene in a stage at a finite angle α, of N × N pixels.
+type Framed<'s> = (&'s Scene, Stage, f64, u32);
+
+/// Does `work` with the pixels of a frame, each by its column and row, by a tracer that is right.
+pub(crate) fn with_pixels<T>(
+    (scene, stage, alpha, size): Framed<'_>,
+    work: impl FnOnce(&dyn Fn(u32, u32) -> [f32; 3]) -> T,
+) -> T {
+    let arena = Arena::default();
+    let frame = Plain::<f64>::new(scene, stage, alpha, size, &arena);
+    work(&|column, row| frame.pixel(column, row).0.1)
+}
+
+/// A frame, and the same frame in light from the opposite side.
+pub(crate) struct Mistaken<'f> {
+    right: Picture<'f, f64>,
+    reversed: Picture<'f, f64>,
+}
+
+impl Mistaken<'_> {
+    /// Does `work` with a frame.
+    pub(crate) fn with<T>(
+        (scene, stage, alpha, size): Framed<'_>,
+        work: impl FnOnce(&Mistaken<'_>) -> T,
+    ) -> T {
+        let reversed = &scene.with_light_reversed();
+        let (arena, other) = (Arena::default(), Arena::default());
+        work(&Mistaken {
+            right: Plain::new(scene, stage, alpha, size, &arena).picture,
+            reversed: Plain::new(reversed, stage, alpha, size, &other).picture,
+        })
+    }
+
+    /// The samples of the pixel at a column and a row in the picture of a tracer with this mistake.
+    pub(crate) fn pixel(&self, mistake: Mistake, column: u32, row: u32) -> [f32; 3] {
+        let rules = MistakenRules {
+            mistake,
+            reversed: &self.reversed,
+        };
+        let Ok((decision, normal)) = self.right.decide_by(&rules, column, row);
+        let shading = if mistake.shading_reversed {
+            &self.reversed
+        } else {
+            &self.right
+        };
+        let Ok(color) = shading.color(decision, normal.as_ref());
+        color
+    }
+}
+
+/// The rules of a tracer with a mistake.
+struct MistakenRules<'m, 'f> {
+    mistake: Mistake,
+    reversed: &'m Picture<'f, f64>,
+}
+
+impl Rules<f64> for MistakenRules<'_, '_> {
+    fn hit(
+        &self,
+        view: &View<'_, f64>,
+        solid: usize,
+        ray: &Line<f64>,
+        first: Hit<f64>,
+    ) -> Result<Hit<f64>, Infallible> {
+        let is_far = match self.mistake.far {
+            Far::None => false,
+            Far::Spheres => first.face.is_none(),
+            Far::All => true,
+        };
+        let far = if is_far {
+            last_hit(view, solid, ray)?
+        } else {
+            None
+        };
+        Ok(far.unwrap_or(first))
+    }
+
+    fn is_in_shadow(
+        &self,
+        picture: &Picture<'_, f64>,
+        mirrored: bool,
+        solid: usize,
+        hit: &Hit<f64>,
+    ) -> Result<bool, Infallible> {
+        let Mistake {
+            shading_reversed,
+            solids,
+            surface,
+            own_shadow,
+            ..
+        } = self.mistake;
+        let (view, reversed) = (picture.view(mirrored), self.reversed.view(mirrored));
+        let facing = view.shading.facing_light(&hit.normal)?;
+        let turned_away = if shading_reversed {
+            facing.is_ge()
+        } else {
+            facing.is_le()
+        };
+        let to_light = view.ray_to_light(hit.point, hit.support);
+        let away = reversed.ray_to_light(hit.point, hit.support);
+        let by_surface = |ray| match &picture.surface {
+            Some(surface) => surface.square.is_ahead(ray),
+            None => Ok(false),
+        };
+        Ok(turned_away
+            || own_shadow
+            || surface.is_light() && by_surface(&to_light)?
+            || surface.is_away() && by_surface(&away)?
+            || solids.is_light() && is_shaded(view, &to_light, Some(solid))?
+            || solids.is_away() && is_shaded(reversed, &away, Some(solid))?)
+    }
+
+    fn surface_is_in_shadow(
+        &self,
+        picture: &Picture<'_, f64>,
+        surface: &SeenSurface<'_, f64>,
+        _: (u32, u32),
+        point: Vector<f64>,
+    ) -> Result<bool, Infallible> {
+        let (solids, support) = (self.mistake.solids, surface.square.support);
+        let to_light = picture.view.ray_to_light(point, support);
+        let away = self.reversed.view.ray_to_light(point, support);
+        Ok(
+            solids.is_light() && is_shaded(&picture.view, &to_light, None)?
+                || solids.is_away() && is_shaded(&self.reversed.view, &away, None)?,
+        )
+    }
+}
+
+impl Toward {
+    fn is_light(self) -> bool {
+        self != Toward::Away
+    }
+
+    fn is_away(self) -> bool {
+        self != Toward::Light
+    }
+}
+
+/// Whether any solid but this one stands between the ray's origin and the light of a view.
+fn is_shaded(
+    view: &View<'_, f64>,
+    ray: &Line<f64>,
+    but: Option<usize>,
+) -> Result<bool, Infallible> {
+    for solid in 0..view.spheres.len() + view.tetrahedra.len() {
+        if Some(solid) != but && view.is_ahead(solid, ray)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Where a line leaves a solid: where it hits it first, walked the other way.
+fn last_hit(
+    view: &View<'_, f64>,
+    solid: usize,
+    line: &Line<f64>,
+) -> Result<Option<Hit<f64>>, Infallible> {
+    let direction = Direction {
+        vector: -line.direction.vector,
+        ..line.direction
+    };
+    let back = Line { direction, ..*line };
+    let hit = match view.spheres.get(solid) {
+        Some(sphere) => sphere.first_hit(&back)?,
+        None => {
+            let tetrahedron = &view.tetrahedra[solid - view.spheres.len()].solid;
+            let face_signs = tetrahedron.face_signs(&direction)?;
+            let functions = tetrahedron.edge_functions(&direction, face_signs);
+            tetrahedron.first_hit(&functions, &back)?
+        }
+    };
+    Ok(hit.map(|hit| Hit {
+        depth: -hit.depth,
+        ..hit
+    }))
+}
