@@ -103,7 +103,7 @@ const PATIENCE: u32 = 1000;
 /// and removes their scenes: for a program that is about to end without coming back to whoever asks
 /// for pictures, as on a signal. Whoever starts or ends a program from now on waits for ever.
 ///
-/// Elsewhere than on Unix a program leaves when its standard input ends, which is with this process.
+/// Elsewhere than on Unix a program leaves when its standard input ends: together with this process.
 pub fn end_all() {
     let held = (0..PATIENCE).find_map(|_| match HELD.try_lock() {
         Ok(held) => Some(held),

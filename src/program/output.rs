@@ -5,12 +5,6 @@ use std::process::ChildStdout;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
-/// Bytes as they came, and whether more are there already.
-pub(super) struct Chunk {
-    pub(super) bytes: Vec<u8>,
-    pub(super) more: bool,
-}
-
 /// The most bytes of a chunk: what a pipe of Linux holds.
 const CHUNK: usize = 1 << 16;
 
@@ -18,18 +12,14 @@ const CHUNK: usize = 1 << 16;
 const WAITING: usize = 16;
 
 /// Reads `pipe` on a thread of its own, until it ends or nobody wants to know.
-pub(super) fn read(mut pipe: ChildStdout) -> io::Result<Receiver<Chunk>> {
+pub(super) fn read(mut pipe: ChildStdout) -> io::Result<Receiver<Vec<u8>>> {
     let (send, chunks) = sync_channel(WAITING);
     let read = move || {
         let mut buffer = vec![0; CHUNK];
         loop {
             match pipe.read(&mut buffer) {
                 Ok(count @ 1..) => {
-                    let chunk = Chunk {
-                        bytes: buffer[..count].to_vec(),
-                        more: holds_more(&pipe),
-                    };
-                    if send.send(chunk).is_err() {
+                    if send.send(buffer[..count].to_vec()).is_err() {
                         return;
                     }
                 }
@@ -43,15 +33,4 @@ pub(super) fn read(mut pipe: ChildStdout) -> io::Result<Receiver<Chunk>> {
         .stack_size(1 << 16)
         .spawn(read)?;
     Ok(chunks)
-}
-
-/// Whether a pipe holds bytes, where the system says so.
-fn holds_more(pipe: &ChildStdout) -> bool {
-    #[cfg(unix)]
-    return rustix::io::ioctl_fionread(pipe).is_ok_and(|bytes| bytes > 0);
-    #[cfg(not(unix))]
-    {
-        let _ = pipe;
-        false
-    }
 }

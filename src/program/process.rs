@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::diagnostics::{self, Diagnostics};
 use super::error::{Fault, Partial};
 use super::group::Group;
-use super::output::{self, Chunk};
+use super::output;
 use super::words::Words;
 use crate::Image;
 
@@ -27,7 +27,7 @@ pub(super) struct Process {
     group: Group,
     /// Lines for its standard input; `None` once that has ended.
     requests: Option<Sender<String>>,
-    output: Receiver<Chunk>,
+    output: Receiver<Vec<u8>>,
     /// Ends with its standard error.
     diagnostics: Receiver<()>,
     answer: Answer,
@@ -81,7 +81,7 @@ impl Process {
         let samples = image.samples_mut();
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(samples);
         match self.output.try_recv() {
-            Ok(chunk) => return Err(self.surplus(chunk.bytes, bytes.len())),
+            Ok(chunk) => return Err(self.surplus(chunk, bytes.len())),
             Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
         }
         self.answer = Answer {
@@ -103,18 +103,13 @@ impl Process {
                 }
                 Err(Stop::End) => return Err(self.ended()),
             };
-            let (used, surplus) = chunk.bytes.split_at(chunk.bytes.len().min(rest.len()));
+            let (used, surplus) = chunk.split_at(chunk.len().min(rest.len()));
             let (filled, unfilled) = rest.split_at_mut(used.len());
             filled.copy_from_slice(used);
             rest = unfilled;
             self.answer.add(used);
-            if rest.is_empty() && (chunk.more || !surplus.is_empty()) {
-                let mut surplus = surplus.to_vec();
-                if surplus.is_empty() {
-                    let soon = Instant::now().checked_add(LOOK);
-                    surplus = self.next(soon).map_or(surplus, |chunk| chunk.bytes);
-                }
-                return Err(self.surplus(surplus, self.answer.expected));
+            if !surplus.is_empty() {
+                return Err(self.surplus(surplus.to_vec(), self.answer.expected));
             }
         }
         if cfg!(target_endian = "big") {
@@ -126,7 +121,7 @@ impl Process {
     }
 
     /// The next bytes of its standard output.
-    fn next(&mut self, deadline: Option<Instant>) -> Result<Chunk, Stop> {
+    fn next(&mut self, deadline: Option<Instant>) -> Result<Vec<u8>, Stop> {
         let mut has_ended = false;
         loop {
             let left = deadline.map_or(Duration::MAX, |deadline| {
@@ -187,7 +182,7 @@ impl Process {
         self.requests = None;
         let deadline = Instant::now() + LEAVE;
         let surplus = self.next(Some(deadline)).ok();
-        let fault = surplus.map(|chunk| self.surplus(chunk.bytes, self.answer.expected));
+        let fault = surplus.map(|bytes| self.surplus(bytes, self.answer.expected));
         if fault.is_none() {
             self.group.has_ended_by(deadline);
         }
