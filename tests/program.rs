@@ -372,7 +372,7 @@ fn samples_that_are_no_numbers_are_kept_and_counted() {
     let output = capture(&folder, "sh p.sh", "10").output().unwrap();
     assert_eq!(
         text(&output.stderr),
-        "firsthit: sh p.sh: 1 samples are NaN and 2 infinite: an EXR file keeps them, in a PNG a NaN is 0\n"
+        "firsthit: sh p.sh: samples that are no numbers: 1 NaN, 2 infinite: an EXR file keeps them, a PNG shows NaN as 0\n"
     );
     assert!(output.status.success());
     let bits = exr_bits(&folder.path().join("a.exr"));

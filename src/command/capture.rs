@@ -193,8 +193,8 @@ fn count(frames: &RangeInclusive<u64>) -> u64 {
 /// time.
 const UPDATE: Duration = Duration::from_millis(200);
 
-/// Makes a picture, with a bar on standard error that grows with its rows, if that is a terminal and
-/// the progress is known.
+/// Makes a picture, with a bar on standard error that grows with its rows, if standard error is a
+/// terminal and the progress is known.
 fn while_watched<T>(size: u32, progress: Option<Progress>, make: impl FnOnce() -> T) -> T {
     let Some(progress) = progress else {
         return make();

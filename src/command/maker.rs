@@ -85,7 +85,7 @@ impl Maker {
                 nans,
                 infinities,
             } if nans + infinities > 0 => Some(format!(
-                "{}: {nans} samples are NaN and {infinities} infinite: an EXR file keeps them, in a PNG a NaN is 0",
+                "{}: samples that are no numbers: {nans} NaN, {infinities} infinite: an EXR file keeps them, a PNG shows NaN as 0",
                 program.name()
             )),
             _ => None,

@@ -27,8 +27,8 @@ fn is_there(result: io::Result<std::process::Output>, name: &str) -> bool {
     }
 }
 
-/// The command that starts the sample program `name`, a file in C, compiled into `folder` with these
-/// options; `None` where there is no compiler.
+/// The command that starts the sample program `name`, a file in C, compiled into `folder` with
+/// `options`; `None` where there is no compiler.
 pub(crate) fn compiled(folder: &TempDir, name: &str, options: &[&str]) -> Option<String> {
     let program = folder.path().join("sample");
     let mut compiler = Command::new("cc");
