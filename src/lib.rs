@@ -17,6 +17,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # The document
+//!
+//! *The document* is the homework on ray tracing that the stages follow: its sections, its figures,
+//! its listings Code 2-1 to Code 6-1 and its equations are cited by their numbers. The README has a
+//! list of what it leaves open. Its equation 4-1 is the light at a point whose normal is n, where l
+//! points toward the light and h halfway between l and the eye, all of length 1:
+//!
+//! L = k_a I_a + k_d I max(0, n·l) + k_s I max(0, n·h)ⁿ
+//!
+//! A pixel shows L times the solid's colour, or k_a I_a times that in shadow. The exponent n is the
+//! material's.
+//!
 //! # From scene to screen
 //!
 //! Each bold word above is one type and one place, and each place knows only those before it: the
