@@ -1,20 +1,19 @@
 //! Scene, stage and α in; image out.
 //!
 //! Every formula of the picture is written once, over an abstract number (`number.rs`). A
-//! [`Kernel`] is a choice of that number, and of what is done where it is in doubt. To be read in
-//! this order:
+//! [`Kernel`] chooses the number, and what happens where it leaves a doubt. To be read in this
+//! order:
 //!
-//! - `frame`, `view`: the scene turned by α and measured in thirds of a pixel, and its
-//!   mirror image;
-//! - `line`, `sphere`, `tetrahedron`, `surface`: a ray and what it meets; `shading`: equation 4-1;
+//! - `frame`, `view`: view space, in which the scene and its mirror image are turned by α;
+//! - `line`, `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
-//! - `pixel`: what a pixel shows, from these: the definition of the picture;
-//! - `ladder`: a pixel in f64 with bounds, where that is in doubt in double-doubles, then in
-//!   arbitrary precision;
-//! - `scanline`: whole rows of pixels at once, which makes nearly all of them;
+//! - `pixel`: what a pixel shows: the definition of the picture;
+//! - `ladder`: a pixel in f64 with bounds; in doubt, in double-doubles; still in doubt, in arbitrary
+//!   precision;
+//! - `scanline`: whole rows at once: nearly all pixels are made there, and few by the ladder;
 //! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
-//! - `pool`, `target`, `stream`: threads, and where rows go; `explain`: a pixel in words;
+//! - `pool`, `target`, `stream`: threads, and the memory of rows; `explain`: a pixel in words;
 //!   `colors`: what other decisions would look like; `mistaken`: what mistakes look like.
 
 mod arena;
@@ -69,8 +68,8 @@ use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
 pub use simd::Simd;
 use target::Target;
 
-/// Rows in a band, which one thread traces: the rows whose crossings are computed together. A band
-/// is small enough to balance the threads, and large enough that claiming one costs nothing.
+/// The rows of a band, which one thread traces. A band is small enough to balance the threads, and
+/// large enough that claiming one costs nothing.
 const BAND: usize = ROWS;
 
 /// Traces pictures: made once, used for any number of frames.
@@ -82,11 +81,11 @@ pub struct Tracer {
     simd: Simd,
     progress: Progress,
     in_doubt: InDoubt,
-    /// Behind a mutex that nobody locks, so that a tracer can be shared to explain pixels.
+    /// The mutex is never locked: it makes `Tracer` `Sync`, so that threads can explain pixels.
     arena: Mutex<Arena>,
-    /// What is known of the rows of the frame that was traced last to be traced over.
+    /// The rows of the frame that [`Tracer::retrace`] traced last.
     history: Vec<RowHistory>,
-    /// The number of that frame; 0 before there is one.
+    /// The number of that frame, or 0.
     frame: u64,
 }
 
@@ -112,8 +111,8 @@ impl Tracer {
         })
     }
 
-    /// The same tracer, confined to these vector instructions. The kernels that go pixel by pixel
-    /// use none.
+    /// The same tracer, confined to these vector instructions. Kernels that trace pixel by pixel use
+    /// none.
     pub fn with_simd(self, simd: Simd) -> Tracer {
         Tracer { simd, ..self }
     }
@@ -128,13 +127,12 @@ impl Tracer {
         self.kernel
     }
 
-    /// How many pixels of the frame traced last were in doubt; none for a kernel that knows no
-    /// doubt.
+    /// How many pixels of the frame traced last were in doubt: 0 for kernels without error bounds.
     pub fn in_doubt(&self) -> InDoubt {
         self.in_doubt
     }
 
-    /// How far it is with the frame that it traces now or traced last.
+    /// The progress of the frame that is traced now or was traced last.
     pub fn progress(&self) -> Progress {
         self.progress.clone()
     }
@@ -155,12 +153,10 @@ impl Tracer {
         self.trace_frame(scene, stage, alpha, image, None, Update::Whole)
     }
 
-    /// The same picture, into an image that may hold the frame that this tracer left there before:
-    /// what has not changed is not written again. An image that holds anything else is written
-    /// whole.
+    /// The same picture. If `image` still holds the frame that this tracer retraced last, only what
+    /// has changed is written; any other image is written whole.
     ///
-    /// Returns rows, counted from the bottom, outside of which nothing was written; none where
-    /// nothing was at all.
+    /// Returns a range of rows, counted from the bottom, that holds all rows written.
     ///
     /// ```
     /// use firsthit::{Image, Kernel, Scene, Stage, Tracer};
@@ -197,8 +193,7 @@ impl Tracer {
             .map_or(0..0, |(first, last)| first as u32..last as u32 + 1))
     }
 
-    /// As [`Tracer::trace`], and what was decided for each pixel: N² decisions, rows from the
-    /// bottom.
+    /// As [`Tracer::trace`]. Returns the decision of each of the N² pixels, rows from the bottom.
     ///
     /// # Errors
     /// As [`Tracer::trace`].
@@ -221,9 +216,9 @@ impl Tracer {
         Ok(decisions)
     }
 
-    /// One pixel, worked through for a person to read: the rays, what they meet and what that beat,
-    /// the decisions and the arithmetic that settled them, each term of equation 4-1, the
-    /// samples. It comes from the code that traces.
+    /// One pixel, worked through for a person to read: its rays, all that they meet, the decision and
+    /// the arithmetic that settled it, each term of equation 4-1, the samples. All numbers come from
+    /// the code that traces.
     ///
     /// # Errors
     /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of
@@ -289,7 +284,7 @@ impl Tracer {
         traced
     }
 
-    /// Traces into an image by `trace`, which gets where samples and decisions go.
+    /// Calls `trace` with the memory that samples, decisions and histories go to.
     fn trace_into(
         &mut self,
         image: &mut Image,
@@ -303,8 +298,8 @@ impl Tracer {
         let (remembered, samples) = match update {
             Update::Whole => (None, image.samples_mut()),
             Update::Changes => {
-                let known = self.frame != 0 && image.frame() == self.frame;
-                if !known {
+                let is_same = self.frame != 0 && image.frame() == self.frame;
+                if !is_same {
                     history.iter_mut().for_each(RowHistory::clear);
                 }
                 history.resize_with(size as usize, RowHistory::default);
@@ -375,8 +370,8 @@ impl Tracer {
                     let ((decision, color), rung) = pixels.pixel(column as u32, number);
                     in_doubt.count(rung);
                     sample.copy_from_slice(&color);
-                    if let Some(place) = decisions.next() {
-                        *place = decision;
+                    if let Some(decided) = decisions.next() {
+                        *decided = decision;
                     }
                 }
                 progress.add(1);
@@ -385,8 +380,8 @@ impl Tracer {
         })
     }
 
-    /// Traces bands of rows on all threads, or all rows as one on one thread: `trace` gets the
-    /// number of a band's first row, and where the band goes.
+    /// Traces bands of rows on all threads; a single thread traces all rows as one band. `trace` gets
+    /// the number of the band's first row.
     fn each_band(
         &mut self,
         target: Target<'_>,
@@ -398,7 +393,7 @@ impl Tracer {
         };
         match &mut self.local[..] {
             [local] => band(0, target, inner(local)),
-            // What each thread locks is its own.
+            // Each thread locks its own memory only.
             locals => self
                 .pool
                 .share(target.split(BAND), |thread, number, target| {
@@ -411,7 +406,7 @@ impl Tracer {
     }
 }
 
-/// A frame that is traced into an image.
+/// Traces a frame into an image.
 struct TraceFrame<'t> {
     tracer: &'t mut Tracer,
     image: &'t mut Image,
@@ -437,7 +432,7 @@ impl FrameWork for TraceFrame<'_> {
     }
 }
 
-/// A pixel that is worked through, and the arithmetic that settles it.
+/// Works through a pixel.
 struct ExplainPixel {
     simd: Simd,
     at: (u32, u32),
@@ -446,7 +441,7 @@ struct ExplainPixel {
 impl FrameWork for ExplainPixel {
     type Output = (String, Rung);
 
-    /// As it is traced, with the rest of its row.
+    /// The pixel is traced with the rest of its row, as in a picture.
     fn by_rows(
         self,
         pixels: &impl RowPixels,
@@ -465,9 +460,9 @@ impl FrameWork for ExplainPixel {
         let decided = Some(&mut decisions[..]);
         let progress = Progress::default();
         rows.trace(only, &mut samples, decided, None, &mut scratch, &progress);
-        let place = column as usize;
-        let color = std::array::from_fn(|channel| samples[3 * place + channel]);
-        let text = pixels.explain(column, row, (decisions[place], color));
+        let index = column as usize;
+        let color = std::array::from_fn(|channel| samples[3 * index + channel]);
+        let text = pixels.explain(column, row, (decisions[index], color));
         (text, pixels.pixel(column, row).1)
     }
 
@@ -483,14 +478,14 @@ fn inner<T>(mutex: &mut Mutex<T>) -> &mut T {
     mutex.get_mut().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a thread keeps from row to row and from frame to frame, in cache lines of its own.
+/// The memory of one thread, in cache lines of its own.
 #[repr(align(128))]
 #[derive(Default)]
 struct Local {
     scratch: Scratch,
-    /// A row on its way into a picture that is streamed.
+    /// The row that is traced, if the picture is streamed.
     row: Vec<f32>,
-    /// Of the rows of this frame that it has traced.
+    /// Counted over the rows of this frame that the thread has traced.
     in_doubt: InDoubt,
 }
 
@@ -498,11 +493,11 @@ struct Local {
 #[derive(Clone, Copy)]
 enum Update {
     Whole,
-    /// What differs from the frame before.
+    /// Only what differs from the frame before.
     Changes,
 }
 
-/// The number of a new frame, unlike that of any other tracer.
+/// The number of a new frame, unique among all tracers.
 fn next_frame() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(1);
     COUNT.fetch_add(1, Relaxed)

@@ -1,63 +1,65 @@
 //! The scan-line tracer: a frame, row by row, from the left to the right.
 //!
-//! Most pixels show what their left neighbour shows. So a pixel is not asked what it shows: it is
-//! found where *edges* cross its row. Between two crossings, in a *gap*, all pixels meet the same
-//! solids, shadows and mirror images; neighbouring gaps that show the same are one *span*.
+//! Most pixels show what their left neighbour shows. So the tracer looks for the columns at which a
+//! row may change what it shows. Its words:
+//!
+//! - A *region* is a convex part of the screen whose pixels have something in common: a solid, the
+//!   surface, a shadow, a mirror image. Its *edges* are where a row enters and leaves it.
+//! - A *gap* lies between two neighbouring edges of a row: all its pixels are in the same regions.
+//! - A *span* is a sequence of gaps that show one thing.
+//! - A *band* is [`ROWS`] neighbouring rows, whose edges are computed together.
 //!
 //! ```text
-//!     frame → edge table → crossings of 8 rows → active edges → what gaps show → spans → samples
-//!     prepare/  edges/table    edges/region        active       visibility/     active   shade/, write/
+//!     frame → edge table → edges of a band → active edges → what gaps show → spans → samples
+//!     prepare/  edges/table    edges/region     active       visibility/   active   shade/, write/
 //!
 //!     one row:
-//!               edge    edge         edge         edge      edge            edge
-//!                 |       |            |            |         |               |
-//!      background | surface | its shadow | sphere   | sphere  | mirror image | surface
-//!                 |       |            | in light   | in dark | image         |
-//!        fill       fill    fill         shade        fill      fill            fill
+//!             edge      edge         edge       edge      edge           edge
+//!               |         |            |          |         |              |
+//!    background | surface | its shadow | sphere   | sphere  | mirror image | surface
+//!               |         |            | in light | in dark |              |
+//!       fill    |  fill   |    fill    | shade    |  fill   |     fill     |  fill
 //! ```
 //!
-//! - `prepare/` makes a frame: which solids and mirror images there are (`outline`), which of them
-//!   others hide (`culling`), how each is coloured (`bodies`) and what shades it (`shadows`), and
-//!   the surface (`surface`); all of it as plain data (`prepared`) with its edges and paints.
-//! - `edges/` holds the edges on the screen at which a row may change what it shows. Eye rays are
-//!   parallel, and so are rays to the light: every silhouette, edge of a face, outline of a shadow
-//!   on a plane or of a mirror image is a straight line or an ellipse, and where it crosses a row
-//!   is a root, known within a bound. So the *possible* columns of a region and its *certain* ones
-//!   may differ: in the columns between them first the region is evaluated, and where that does
-//!   not tell, the whole pixel. Shadows on spheres have no edges: `shade/` finds them.
-//! - `active.rs` keeps the crossings of a row in order, and what is visible between them, for the
-//!   next row, where mostly nothing but places has changed.
-//! - `visibility/` finds out what a span shows: which regions cover it (`coverage`), which solid is
-//!   in front by a plane that keeps solids apart (`separation`) or by a test of depth (`depth`),
-//!   and what of it is seen (`resolve`).
-//! - `shade/` computes the pixels of spheres, many at a time (`run`), by one formula (`equation`):
-//!   within bounds for the kernels that are right, or without (`policy`). Columns turned away from
-//!   the light are found as runs, too, and those that may have a highlight (`columns`).
+//! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that are not hidden
+//!   (`culling`), their colours (`bodies`) and shadows (`shadows`), and the surface (`surface`). The
+//!   result is plain data (`prepared`): regions and paints.
+//! - `edges/` crosses regions with rows. Eye rays are parallel, and so are rays to the light: every
+//!   silhouette, edge of a face, outline of a shadow on a plane or of a mirror image is a straight
+//!   line or an ellipse. An edge is a root of its equation, enclosed by a bound on its error. So a
+//!   region has *possible* columns and *certain* ones. For the columns between them the region is
+//!   evaluated, and where that leaves a doubt, the whole pixel is. A shadow on a sphere is no region:
+//!   `shade/` computes it.
+//! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
+//!   mostly nothing but the columns of the edges has changed.
+//! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
+//!   by a separating plane (`separation`) or by a depth test (`depth`).
+//! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with bounds
+//!   on its errors for the certified kernel and without for the others (`policy`). The columns of a
+//!   sphere that face the light, and those that may have a highlight, are found first (`columns`).
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
-//! All of this is f64 with proven bounds. A pixel that they leave in doubt is asked by itself
-//! (`ladder.rs`), by the formulas that everything here is derived from: `pixel.rs` is the
-//! definition, this is how it is computed fast.
+//! All of this is f64 with proven bounds: a filter. A pixel in doubt is decided by itself
+//! (`ladder.rs`), by the definition of the picture (`pixel.rs`), from which every formula here is
+//! derived.
 //!
 //! A new kind of solid, such as a cylinder, would need
 //!
-//! - in `scene`: its type and its refusals (`file`), a ball around it (`hull`), when it lies inside
-//!   of others (`hidden`), what is exactly known of it (`exact`);
-//! - in `tracer`: the line that meets it, in a file beside `tracer/sphere.rs`; `frame`, `view`,
+//! - in `scene`: a type and its refusals (`file`), a bounding ball (`hull`), a test whether it lies
+//!   inside of others (`hidden`), what is exactly decided about it (`exact`);
+//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`, `view`,
 //!   `extent`, `pixel`, `palette` and `explain` name every kind of solid;
-//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), its colours
-//!   (`prepare/bodies`, `visibility/resolve`, and `shade/` where they vary), its shadow on planes
-//!   and on spheres (`prepare/shadows`, `shade/caster`), and planes that keep it apart from others
-//!   (`visibility/separation`).
+//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/bodies`,
+//!   `visibility/resolve`, and `shade/` where they vary), shadows on planes and on spheres
+//!   (`prepare/shadows`, `shade/caster`), and separating planes (`visibility/separation`).
 //!
-//! A [`Region`](edges::region::Region) is half-planes and at most one ellipse, and a solid has one:
-//! the outline of a cylinder, which is a union of two ellipses and what lies between them, would
-//! need several.
+//! A [`Region`](edges::region::Region) is convex, and has at most one ellipse. The outline of a
+//! cylinder, two ellipses and what lies between them, would need several regions.
 //!
-//! What not to try again: closures given to `map` inside of vector code, which are compiled without
-//! the vector instructions around them; 16 rows at once; shading the runs of a sphere together at
-//! the end of some rows.
+//! What was tried and made it slower: closures given to `map` inside of vector code, which are
+//! compiled without the vector instructions around them; bands of 16 rows; shading the spans of a
+//! sphere together at the end of some rows.
 
 mod active;
 #[cfg(test)]
@@ -98,12 +100,12 @@ pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
 use write::row::Row;
 
-/// The mean number of solids behind a pixel from which on it pays to look for hidden ones.
+/// The mean number of solids behind a pixel from which on culling pays.
 const CULL_FROM: u64 = 4;
 
 /// A frame, ready to be traced row by row.
 pub(super) struct RowTracer<'f, P> {
-    /// The pixels one by one, for those that rows leave in doubt.
+    /// Decides the pixels that rows leave in doubt.
     pixels: &'f P,
     frame: Prepared<'f>,
     level: Level,
@@ -120,12 +122,12 @@ pub(super) struct Scratch {
 }
 
 impl<'f, P: RowPixels> RowTracer<'f, P> {
-    /// The frame that `pixels` are of.
+    /// Prepares the frame of `pixels`.
     pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
         RowTracer::culled_from(CULL_FROM, pixels, precision, level, arena)
     }
 
-    /// The same, with what is hidden looked for where a pixel may show so many solids.
+    /// The same, with culling from `cull_from` solids behind a pixel on.
     fn culled_from(
         cull_from: u64,
         pixels: &'f P,
@@ -151,10 +153,9 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch.shader.begin(self.frame.shaded_spheres);
     }
 
-    /// Traces neighbouring rows into their samples, and their decisions where they are asked for.
-    /// Returns how many pixels double-doubles and arbitrary precision had to settle. `scratch` is
-    /// prepared for the frame. With a `history` of the rows, which holds for `samples`, only
-    /// what differs is written.
+    /// Traces neighbouring rows into their samples and, if given, decisions. Returns how many pixels
+    /// were in doubt. `scratch` must be prepared for the frame. `history`, if given, must tell what
+    /// `samples` show; then only differences are written.
     pub(super) fn trace(
         &self,
         rows: Range<u32>,
@@ -231,7 +232,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);
             match visible {
-                // The span has no columns in this row.
+                // The span has no columns in this row, but may have some in the next.
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(row, (from, to), shows, shader),
                 Visible::First(_) => {
