@@ -7,6 +7,6 @@ pub(in crate::tracer) enum Precision {
     Single,
     /// f64.
     Double,
-    /// f64, and pixels that its errors may make wrong are asked for by themselves.
+    /// f64 with bounds on its errors; pixels in doubt are decided by themselves.
     Bounded,
 }

@@ -1,4 +1,4 @@
-//! Samples: what a row shows is written, unless it stands there from the frame before.
+//! Writes what a row shows, unless it stands there from the frame before.
 
 pub(super) mod history;
 pub(super) mod paint;

@@ -26,7 +26,7 @@ pub(crate) struct ShadowCylinder {
 }
 
 impl Caster<'_> {
-    /// Whether it certainly casts no shadow on the pixels of a box.
+    /// Whether the caster certainly casts no shadow on the pixels of a box.
     pub(crate) fn misses(&self, hits: &HitBox) -> bool {
         match self {
             Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative(hits)),

@@ -1,17 +1,17 @@
-//! A sphere in neighbouring rows: which of its pixels can be shaded at once, and which need not be
-//! asked where they face.
+//! The columns of a sphere in a band of rows: those that f64 can shade, those that face the light,
+//! and those that may have a highlight.
 //!
-//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave where s is
-//! multiplied with what is not negative, and convex where it is multiplied with what is not
-//! positive; its negative is concave then. A concave function is positive between any two columns
-//! in which it is positive. Where it is negative in one column and positive in one to the right of
-//! it, it is negative in all columns to the left of the first: were it not in one of them, it would
-//! be no less than the least of that and the second, between them. And where it is less in a column
-//! than in the next, it is less still in all columns before.
+//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave if its factor of s
+//! is not negative; if the factor is not positive, the form's negative is concave. Three properties
+//! of a concave function f are used, for columns i < j:
 //!
-//! So the columns where it changes sign may be guessed, by the roots of a quadratic equation. The
-//! form is asked in few columns beside these, with its bound as in `shade/sphere.rs`, and what they
-//! tell of all others is certain. Where they do not, the row is left unsettled.
+//! - If f(i) > 0 and f(j) > 0, then f > 0 between them.
+//! - If f(i) < 0 and f(j) > 0, then f < 0 in all columns to the left of i.
+//! - If f(i) < f(j), then f < f(i) in all columns to the left of i.
+//!
+//! So the columns in which f changes sign are guessed, by the roots of a quadratic equation. f is
+//! evaluated beside them, with its bound as in `shade/sphere.rs`. If the signs are certain there,
+//! they are certain in the whole row; if not, the row is left unsettled.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
@@ -21,60 +21,60 @@ use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
 
-/// Rounding moves a place by less than so many columns; where that is not so, what is guessed with
-/// it is found to be wrong.
+/// Rounding moves a root by less than so many columns, or else the guess is rejected.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;
 
 /// A half-open range of columns in each row of a band: where it begins, and where it ends.
 type Intervals = [[u32; ROWS]; 2];
 
-/// What is known of a sphere's pixels in a band of rows.
+/// The columns of a sphere in a band of rows.
 #[derive(Clone)]
 pub(crate) struct SphereBand {
-    /// Those that are hit deep enough inside the outline for f64 to say anything.
+    /// The columns in the zones: so far inside the outline that f64 shades them with bounds.
     shadeable: Intervals,
-    /// Those in each zone but the outermost.
+    /// The columns in each zone but the outermost, with all zones inside.
     zones: [Intervals; ZONES - 1],
+    /// The columns that face the light.
     facing: Arcs,
-    /// Those outside of which there is certainly no highlight.
+    /// The columns that may have a highlight.
     bright: Intervals,
-    /// The casters that may cast a shadow on any of them, by [`bit_of`].
+    /// The casters that may cast a shadow on a shadeable column, by [`bit_of`].
     casters: u64,
 }
 
-/// The bit of a caster by its number, which it may have in common with others.
+/// The bit of a caster's number. Casters may share a bit.
 pub(crate) fn bit_of(caster: usize) -> u64 {
     1 << (caster % 64)
 }
 
-/// The columns in which a form that is concave or convex is positive.
+/// The sign of a form that is concave or convex.
 #[derive(Clone)]
 struct Arcs {
-    /// Where it is positive, if it is concave; where it is negative, if it is convex.
+    /// The columns in which a concave form is positive, or a convex one negative.
     inside: Intervals,
     is_concave: bool,
-    /// Bit by bit, the rows of which this is certain.
+    /// A bit for each row: whether `inside` is certain.
     settled: u64,
 }
 
-/// What is known of a sphere's pixels in a row.
+/// The columns of a sphere in a row, as in [`SphereBand`].
 #[derive(Clone, Copy)]
 pub(crate) struct SphereColumns {
     pub(crate) shadeable: Columns,
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
-    /// The casters that may cast a shadow on them, by [`bit_of`].
     pub(crate) casters: u64,
-    /// The columns in which it faces the light, or those in which it does not; `None` where each
-    /// is to be asked.
+    /// Some columns, and whether they face the light; all others do the opposite. `None` where each
+    /// column must be tested.
     pub(crate) facing: Option<(Columns, bool)>,
 }
 
-/// What is known of spheres in the rows that are traced now, found when it is first asked for.
+/// The columns of spheres in the band that is traced now, computed when first needed.
 #[derive(Default)]
 pub(crate) struct SphereCache {
+    /// By the sphere's number among those that are shaded.
     cache: Vec<SphereBand>,
-    /// For each, the first of the rows that it is of.
+    /// For each, the first row of the band that it was computed for.
     first: Vec<Option<u32>>,
 }
 
@@ -88,7 +88,7 @@ impl SphereCache {
         }
     }
 
-    /// A sphere in a row.
+    /// The columns of a sphere in a row.
     pub(crate) fn of(
         &mut self,
         shaded: &ShadedSphere<'_>,
@@ -160,7 +160,7 @@ impl SphereBand {
         near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 
-    /// Finds all but the casters, of the rows from `first` on.
+    /// Computes all but the casters, for the rows from `first` on.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(&mut self, simd: S, sphere: &RowSphere, first: u32, grid: Grid) {
         self.facing.is_concave = sphere.light.is_concave == Some(true);
@@ -257,7 +257,7 @@ impl<S: Simd> InRows<'_, S> {
         [is_chord.select(from, zero), is_chord.select(to, zero)]
     }
 
-    /// How much a form is more than `level` in a column of each row, or less if it is convex.
+    /// The form minus `level`, times `sign`, in a column of each row.
     #[inline(always)]
     fn above(&self, form: &LinearForm, level: f64, sign: f64, column: S::f64s) -> S::f64s {
         let q = self.q(column);
@@ -265,8 +265,8 @@ impl<S: Simd> InRows<'_, S> {
         (self.m * form.m + form.constant + q * form.q + s * form.s - level) * sign
     }
 
-    /// Of the columns `shadeable` those in which a form is above `level`, if it is concave, or below,
-    /// if it is convex; and in which rows it certainly is there, and not in the others.
+    /// The columns among `shadeable` in which a concave form is above `level`, or a convex one below;
+    /// and the rows for which that is certain of these and of all other columns.
     #[inline(always)]
     fn arc(
         &self,
@@ -297,7 +297,7 @@ impl<S: Simd> InRows<'_, S> {
         let root = discriminant.max(zero).sqrt() * o;
         let middle = -(r * a);
         let (low, high) = ((middle - root) * inverse, (middle + root) * inverse);
-        // Where r + a q > 0, F is 0 with the other sign of s, and positive at the end of the chord.
+        // At a root with r + a q > 0, r + a q − o s is 0, and F is positive up to the chord's end.
         let from_end = !has_roots | (low * a + r).simd_gt(zero);
         let to_end = !has_roots | (high * a + r).simd_gt(zero);
         let (low, high) = (low + self.sphere.center_x, high + self.sphere.center_x);
@@ -306,12 +306,12 @@ impl<S: Simd> InRows<'_, S> {
         let from = from_end.select(first, from);
         let to = to_end.select(end, to);
         let is_none = (!has_roots & r.simd_lt(zero)) | from.simd_ge(to);
-        // It is most at q/s = a/o.
+        // F is largest at q/s = a/o.
         let top = (self.squared.max(zero) * inverse).sqrt() * a + self.sphere.center_x;
         let top = in_columns::<S>(self.grid, top).floor();
         let top = top.min(last - one).max(first);
-        // The last column before those, the first and the last of them, and the next; or of none,
-        // two columns on either side of the top.
+        // The columns beside each end of the guess, on either side of it. If the guess is empty, the
+        // four columns around the top.
         let columns = [
             is_none.select(top - one, from - one),
             is_none.select(top, from),

@@ -1,6 +1,5 @@
 //! Equation 4-1 along a row of a sphere: `shading.rs` and `sphere.rs` in the axes of q, m and s, as
-//! derived in `shade/sphere.rs`, for as many pixels as a vector holds. What is known of the errors
-//! is the policy's.
+//! derived in `shade/sphere.rs`, for as many pixels as a vector holds and in any arithmetic.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -12,13 +11,13 @@ use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, SphereHighli
 
 // No closures below: see `shade/run.rs`.
 
-/// Neighbouring pixels of a sphere in a row: where they are hit.
+/// The coordinates of the hits of neighbouring pixels; m is that of the row.
 pub(crate) struct Hits<V> {
     pub(crate) q: V,
     pub(crate) s: V,
 }
 
-/// A sphere in a row, as a policy computes it.
+/// A sphere in a row, in the arithmetic of a policy.
 pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
     simd: S,
     sphere: &'s RowSphere,
@@ -73,7 +72,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         lights
     }
 
-    /// Which hits have a caster between them and the light.
+    /// Whether a caster stands between a hit and the light.
     #[inline(always)]
     pub(crate) fn behind(
         &self,
@@ -99,7 +98,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
                 ];
                 let inside = splat::<S, P>(self.simd, cylinder.limit) - (x * x + y * y + z * z);
                 let (inside, outside) = P::is_inside(inside, cylinder.error);
-                // A sphere that is neither before nor behind casts no shadow.
+                // A caster abreast of the hit casts no shadow on it.
                 let before = &cylinder.before;
                 let (not_before, is_before) = P::is_inside(-self.value(before, hits), before.error);
                 (inside & is_before, outside | not_before)
@@ -107,14 +106,13 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         }
     }
 
-    /// All pixels, or none.
+    /// The mask of all pixels, or of none.
     #[inline(always)]
     pub(crate) fn mask(&self, all: bool) -> Mask<S, P> {
         Mask::<S, P>::splat(self.simd, all)
     }
 
-    /// Ambient light as it is in all samples, with a bound on the errors of all but the highlight
-    /// in a zone.
+    /// The ambient part of samples, with the bound on the error of all parts but the highlight.
     #[inline(always)]
     pub(crate) fn ambient(&self, zone: usize) -> Samples<S, P> {
         let error = splat::<S, P>(self.simd, self.sphere.errors[zone]);
@@ -127,8 +125,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
     }
 
     /// Samples of pixels in the light, from X = `x` on: ambient + diffuse · max(0, n·l) +
-    /// specular · (n·h)ⁿ. `light` is their n·l; those that may have a highlight are `bright`, bit
-    /// by bit.
+    /// specular · (n·h)ⁿ. `light` is their n·l; `bright` has a bit for each that may have a highlight.
     #[inline(always)]
     pub(crate) fn lit(
         &self,
@@ -151,7 +148,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
             let power = self.highlight(highlight, &self.hits(x), (zone, bright));
             let specular = P::Lane::samples_of(self.simd, &self.sphere.color.specular);
             for (side, power) in power.as_ref().iter().enumerate() {
-                // No coefficient is negative, so what is below stays below.
+                // No coefficient is negative, so lower ends stay lower ends.
                 let power = spread(*power);
                 for i in 0..3 {
                     let sample = &mut samples[i].as_mut()[side];
@@ -162,7 +159,7 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         samples
     }
 
-    /// (n·h)ⁿ where pixels are bright.
+    /// (n·h)ⁿ of the bright pixels.
     #[inline(always)]
     fn highlight(
         &self,

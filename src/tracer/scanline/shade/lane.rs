@@ -8,7 +8,7 @@ use crate::tracer::scanline::shade::sphere::Cycle;
 
 /// f32 or f64.
 pub(crate) trait Lane: SimdFloatElement {
-    /// As many as the processor computes with at once.
+    /// As many lanes as the processor computes with at once.
     type Vector<S: Simd>: SimdFloat<S, Element = Self>;
 
     fn of(value: f64) -> Self;
@@ -20,8 +20,7 @@ pub(crate) trait Lane: SimdFloatElement {
     /// Three vectors of samples as they lie in memory, from red on.
     fn samples_of<S: Simd>(simd: S, cycle: &Cycle) -> [Self::Vector<S>; 3];
 
-    /// Samples as they are written, rounded to f32. The second three vectors are of the pixels
-    /// that the first three have no room for.
+    /// Samples rounded to f32. `high` holds the pixels for which `low` has no room.
     fn narrow<S: Simd>(low: [Self::Vector<S>; 3], high: [Self::Vector<S>; 3]) -> [S::f32s; 3];
 }
 
@@ -89,7 +88,7 @@ impl Lane for f64 {
     }
 }
 
-/// A vector of samples from one on.
+/// The vector of samples from number `sample` on.
 #[inline(always)]
 fn from_sample<S: Simd>(simd: S, cycle: &Cycle, sample: usize) -> S::f64s {
     let channel = sample % 3;

@@ -1,9 +1,9 @@
-//! What the shading of spheres knows of its errors: certified f64 has bounds on them, f32 and f64
-//! have none.
+//! The arithmetic of the shader of spheres: certified f64, with bounds on errors, or f32 and f64
+//! without.
 //!
 //! f32 and f64 round after every operation, so that their pictures are the same bytes on every
-//! machine. Certified f64 multiplies and adds at once where the processor can, which rounds once
-//! instead of twice: the errors are within the same bounds, and what is certain is the same.
+//! machine. Certified f64 uses fused multiply-add if the processor has it, which rounds once instead
+//! of twice. The errors stay within the same bounds, and certified samples are the same.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -13,8 +13,8 @@ use crate::tracer::scanline::shade::lane::Lane;
 /// A SIMD vector of a policy's floats.
 pub(crate) type LaneVector<S, P> = <<P as Policy<S>>::Lane as Lane>::Vector<S>;
 
-/// A vector's pixels of which the answer to a question is yes, and those of which it is no: with
-/// bounds some may be neither.
+/// The pixels for which something certainly holds, and those for which it certainly does not: with
+/// bounds, some may be in neither.
 pub(crate) type Answers<S, P> = (Mask<S, P>, Mask<S, P>);
 
 /// Some pixels of a vector.
@@ -23,11 +23,11 @@ pub(crate) type Mask<S, P> = <LaneVector<S, P> as SimdBase<S>>::Mask;
 /// Three vectors of samples as they lie in memory.
 pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<LaneVector<S, P>>; 3];
 
-/// What is known of errors.
+/// An arithmetic.
 pub(crate) trait Policy<S: Simd> {
     type Lane: Lane;
 
-    /// With bounds the least and the most that a number can be, without them the number.
+    /// A number without bounds, or the two ends of its enclosure.
     type Sides<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
 
     /// a b + c.
@@ -37,16 +37,16 @@ pub(crate) trait Policy<S: Simd> {
         c: LaneVector<S, Self>,
     ) -> LaneVector<S, Self>;
 
-    /// Whether depths, which have a bound on their errors, are 0 or more.
-    fn is_inside(depth: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
+    /// Whether values, of which `error` bounds the errors, are 0 or more.
+    fn is_inside(value: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
 
-    /// Numbers that have a bound on their errors.
+    /// Values with these bounds on their errors.
     fn within(
         value: LaneVector<S, Self>,
         error: LaneVector<S, Self>,
     ) -> Self::Sides<LaneVector<S, Self>>;
 
-    /// 1 − `missing` in the form in which its powers are computed.
+    /// 1 − `missing`, as the factor of a power.
     #[inline(always)]
     fn factor(missing: LaneVector<S, Self>) -> LaneVector<S, Self> {
         -missing + <Self::Lane as Lane>::of(1.0)
@@ -70,15 +70,15 @@ pub(crate) trait Policy<S: Simd> {
         factor
     }
 
-    /// Highlights of the pixels that may have one, bit by bit. Those of others are at most 2⁻⁵⁹,
-    /// which bounds on the errors of samples count, and are 0 where there are no bounds.
+    /// The highlights, where `bright` has a bit for each pixel that may have one. Others are at most
+    /// 2⁻⁵⁹: the bounds on samples allow for that, and without bounds they are made 0.
     #[inline(always)]
     fn where_bright(_: S, highlight: LaneVector<S, Self>, _: u64) -> LaneVector<S, Self> {
         highlight
     }
 
-    /// Samples rounded to f32, and bit by bit the pixels of which they are in doubt; `low` and
-    /// `high` as in [`Lane::narrow`].
+    /// Samples rounded to f32, and a bit for each pixel in doubt. `low` and `high` are as in
+    /// [`Lane::narrow`].
     fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64);
 }
 
@@ -95,8 +95,8 @@ impl<S: Simd> Policy<S> for Certified {
     }
 
     #[inline(always)]
-    fn is_inside(depth: S::f64s, error: f64) -> Answers<S, Self> {
-        (depth.simd_gt(error), depth.simd_lt(-error))
+    fn is_inside(value: S::f64s, error: f64) -> Answers<S, Self> {
+        (value.simd_gt(error), value.simd_lt(-error))
     }
 
     #[inline(always)]
@@ -110,7 +110,7 @@ impl<S: Simd> Policy<S> for Certified {
         let [[g, h], [i, j], [k, l]] = high;
         let lower = f64::narrow::<S>([a, c, e], [g, i, k]);
         let upper = f64::narrow::<S>([b, d, f], [h, j, l]);
-        // What is not a number is not equal to itself, either.
+        // A NaN is not equal to itself, so it is in doubt, too.
         let first = !lower[0].simd_eq(upper[0]);
         let second = !lower[1].simd_eq(upper[1]);
         let third = !lower[2].simd_eq(upper[2]);
@@ -140,8 +140,8 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     }
 
     #[inline(always)]
-    fn is_inside(depth: L::Vector<S>, _: f64) -> Answers<S, Self> {
-        let is_inside = depth.simd_ge(L::of(0.0));
+    fn is_inside(value: L::Vector<S>, _: f64) -> Answers<S, Self> {
+        let is_inside = value.simd_ge(L::of(0.0));
         (is_inside, !is_inside)
     }
 
@@ -172,7 +172,7 @@ impl<S: Simd, L: Lane> Policy<S> for L {
         -factor.min(L::of(1.0)) + L::of(1.0)
     }
 
-    // A picture would else depend on where vectors begin.
+    // Without this, a picture would depend on where vectors begin.
     #[inline(always)]
     fn where_bright(simd: S, highlight: L::Vector<S>, bright: u64) -> L::Vector<S> {
         let is_bright = <L::Vector<S> as SimdBase<S>>::Mask::from_bitmask(simd, bright);

@@ -1,4 +1,4 @@
-//! A run of pixels that see a sphere, many at a time.
+//! Shades a run: neighbouring pixels of a sphere in a row, many at a time.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
 use crate::tracer::scanline::write::paint::{Paint, fill};
 
-/// What the shading of a run needs, kept for the next.
+/// What the shading of a run needs, kept from run to run.
 #[derive(Default)]
 pub(crate) struct RunScratch {
     /// The casters that may cast a shadow on any pixel of the run.
@@ -32,7 +32,7 @@ pub(crate) struct Run<'r> {
     /// The columns in each zone but the outermost, and those that may have a highlight.
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
-    /// Whether all of them are certainly not turned away from the light, or it does not matter.
+    /// Whether all pixels face the light, or no stage with shadows is drawn.
     pub(crate) is_facing: bool,
     pub(crate) samples: &'r mut [f32],
     pub(crate) decisions: Option<&'r mut [Decision]>,
@@ -41,8 +41,8 @@ pub(crate) struct Run<'r> {
     pub(crate) scratch: &'r mut RunScratch,
 }
 
-// No closures below: the instructions of a level are only there for what is inlined into its
-// dispatch, which closures given to other functions are not.
+// No closures below: only what is inlined into a dispatch is compiled with the instructions of its
+// level, and closures that are given to other functions are not.
 
 impl Run<'_> {
     /// X of a pixel, and of the pixel `on` columns to the right.
@@ -52,7 +52,7 @@ impl Run<'_> {
         [x, x + 3.0 * on as f64]
     }
 
-    /// Those of some pixels that may have a highlight, bit by bit.
+    /// A bit for each of `count` pixels: whether it may have a highlight.
     #[inline(always)]
     fn bright(&self, first: usize, count: usize) -> u64 {
         let begin = self.from + first as u32;
@@ -60,7 +60,7 @@ impl Run<'_> {
         (1 << (to.clamp(begin, end) - begin)) - (1 << (from.clamp(begin, end) - begin))
     }
 
-    /// Writes some pixels, those that are in shadow bit by bit.
+    /// Writes the pixels whose bit is set in `in_shadow`.
     #[inline(always)]
     fn darken(&mut self, pixels: Range<usize>, in_shadow: u64) {
         if in_shadow != 0 {
@@ -73,7 +73,7 @@ impl Run<'_> {
         }
     }
 
-    /// Writes the decisions of some pixels, bit by bit in shadow or not.
+    /// Writes the decisions of pixels, whose bits in `in_shadow` tell which are dark.
     #[inline(always)]
     fn decide(&mut self, shaded: &ShadedSphere<'_>, pixels: Range<usize>, in_shadow: u64) {
         if let Some(decisions) = &mut self.decisions {
@@ -91,7 +91,7 @@ impl Run<'_> {
 /// Shades a run of pixels that see a sphere.
 #[inline(always)]
 pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
-    // So many pixels are written at a time; where a vector holds fewer, they are in two of them.
+    // Each turn writes the pixels of one vector of f32s, which are those of two vectors of f64s.
     let (width, lanes) = (S::f32s::LEN, LaneVector::<S, P>::LEN);
     let row = SphereInRow::<S, P>::new(simd, &shaded.sphere, run.y);
     let tests_shadows = !run.is_facing || !run.scratch.casters.is_empty();
@@ -100,10 +100,9 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
     let (mut done, mut first) = (0, 0);
     let mut lights = row.lights(run.x(first, lanes));
     while done < count {
-        // The last vector may lie on part of the one before it.
+        // The last vector may overlap the one before.
         let next = (first + width).min(last);
-        // A root takes its time: that of the next vector is begun before this one waits for its
-        // own.
+        // Roots take long, so that of the next vector is begun before this one is used.
         let now = lights;
         if next > first {
             lights = row.lights(run.x(next, lanes));
@@ -114,7 +113,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         let x = run.x(first, lanes);
         let (mut in_shadow, mut unknown) = (0, 0);
         if tests_shadows {
-            // Of a short run there may be nothing in the second vector.
+            // The second vector of a short run may hold no pixel.
             for half in 0..here.div_ceil(lanes) {
                 let (dark, doubts) = shadowed(&row, shaded, run, x[half], now[half]);
                 in_shadow |= dark << (half * lanes);
@@ -143,7 +142,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         run.decide(shaded, first..first + here, in_shadow);
         let mut doubts = unknown & all;
         while doubts != 0 {
-            // Where this vector has written over the one before, its own bounds count.
+            // Both vectors may doubt a pixel in which they overlap.
             let doubt = column + doubts.trailing_zeros();
             if doubt >= run.from + done as u32 || !run.scratch.doubts.contains(&doubt) {
                 run.scratch.doubts.push(doubt);
@@ -180,7 +179,7 @@ fn shadowed<S: Simd, P: Policy<S>>(
     (dark.to_bitmask(), (!(dark | lit)).to_bitmask())
 }
 
-/// Writes as many samples as there are, or as three vectors hold.
+/// Stores three vectors of samples, or as many of them as `samples` holds.
 #[inline(always)]
 fn store<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
     let width = S::f32s::LEN;
@@ -193,7 +192,7 @@ fn store<S: Simd>(samples: &mut [f32], vectors: &[S::f32s; 3]) {
         for (i, vector) in vectors.iter().enumerate() {
             vector.store_slice(&mut all[i * width..(i + 1) * width]);
         }
-        // By constant lengths, which are moves instead of a call.
+        // Copies of constant length are moves instead of calls.
         let (pixels, _) = samples.as_chunks_mut::<3>();
         for (pixel, from) in pixels.iter_mut().zip(all.as_chunks::<3>().0) {
             *pixel = *from;

@@ -5,14 +5,13 @@ use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::sphere::RowSphere;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
-/// A sphere that is shaded.
+/// A sphere that is shaded, with its casters and its colours.
 pub(crate) struct ShadedSphere<'f> {
-    /// Its number among those of the frame.
+    /// Its number among the shaded spheres of the frame.
     pub(crate) number: usize,
     pub(crate) sphere: RowSphere,
-    /// What may cast a shadow on it.
     pub(crate) casters: &'f [Caster<'f>],
-    /// Its decision in the light.
+    /// The decision of its pixels in the light.
     pub(crate) lit: Decision,
     pub(crate) in_shadow: PaintNumber,
 }

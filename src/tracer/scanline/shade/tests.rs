@@ -21,8 +21,8 @@ struct Counts {
     in_doubt: usize,
 }
 
-/// Shades all of a sphere, hidden or not, without what spans tell of shadows: each pixel is asked
-/// for all that may be in the way of the light. What is certain is held against pixels that see it.
+/// Shades all of a sphere, hidden or not, with all casters for every pixel. Certain samples are
+/// compared with those of pixels that show the sphere.
 fn check(
     tracer: &RowTracer<'_, Ladder<'_>>,
     shaded: &ShadedSphere<'_>,

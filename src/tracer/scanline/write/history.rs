@@ -1,18 +1,18 @@
-//! What is remembered of a row for the next frame.
+//! What a row shows, remembered for the next frame.
 
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::write::paint::Bits;
 
-/// The columns of a row that were last given one colour.
+/// The columns of a row that were filled in the last frame, and their colours.
 #[derive(Default)]
 pub(in crate::tracer) struct RowHistory {
-    /// Whether any of the row's samples has been written since this was last unset.
+    /// Whether a sample of the row was written since this flag was last cleared.
     pub(in crate::tracer) is_written: bool,
-    /// From the left, in the frame before.
+    /// The intervals of the frame before, from the left.
     filled: Vec<Filled>,
-    /// How many of these lie to the left of what is being filled.
+    /// How many of `filled` lie to the left of the columns that are filled now.
     passed: usize,
-    /// The same of the frame that is being traced.
+    /// The intervals of the frame that is traced now.
     next: Vec<Filled>,
 }
 
@@ -24,13 +24,13 @@ struct Filled {
 }
 
 impl RowHistory {
-    /// Forgets the row, which others may have written.
+    /// Forgets the row: somebody else may have written it.
     pub(in crate::tracer) fn clear(&mut self) {
         self.filled.clear();
     }
 
-    /// Fills columns, from the left to the right of the row: calls `write` with those that do not
-    /// have this colour already.
+    /// Fills columns; calls come from the left to the right of the row. `write` is called with the
+    /// columns that do not have this colour already.
     pub(crate) fn fill(&mut self, columns: Columns, color: Bits, mut write: impl FnMut(Columns)) {
         match self.next.last_mut() {
             Some(last) if last.columns.1 == columns.0 && last.color == color => {
@@ -60,7 +60,7 @@ impl RowHistory {
         }
     }
 
-    /// The row is written.
+    /// Ends the row.
     pub(crate) fn finish(&mut self) {
         std::mem::swap(&mut self.filled, &mut self.next);
         self.next.clear();
@@ -94,7 +94,7 @@ mod tests {
         // No colour is that of a row that nobody has written.
         let mut pixels = [(1, 0); COLUMNS as usize];
         for round in 0..2000 {
-            // Between two intervals there may be pixels that are not filled but shaded.
+            // Some intervals are shaded instead of filled.
             let intervals = intervals(&mut random);
             let is_filled: Vec<bool> = intervals.iter().map(|_| random.below(6) > 0).collect();
             if round % 50 == 49 {

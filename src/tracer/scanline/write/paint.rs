@@ -1,4 +1,4 @@
-//! The colours of a frame that are filled in.
+//! Paints: the colours that spans are filled with.
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
@@ -7,10 +7,10 @@ use fearless_simd::{Simd, f32x4};
 
 use crate::tracer::decision::Decision;
 
-/// What many pixels show, and their colour as it lies in memory: the same pixel again and again.
+/// A decision that many pixels show, and its colour as it lies in memory.
 pub(crate) struct Paint {
     pub(crate) decision: Decision,
-    /// As many as a vector of any width holds, from any of the three channels on.
+    /// The three channels again and again: enough for a vector that begins with any of them.
     samples: [f32; 16 + 2],
 }
 
@@ -22,7 +22,7 @@ impl Paint {
         }
     }
 
-    /// A vector of samples, of which the first is so many on from a pixel's first.
+    /// The vector of samples from number `index` on, where 0 is the first sample of a pixel.
     #[inline(always)]
     fn from<S: Simd, V: SimdFloat<S, Element = f32>>(&self, simd: S, index: usize) -> V {
         let channel = index % 3;
@@ -42,18 +42,18 @@ impl Paint {
 /// The bits of a colour's three samples.
 pub(crate) type Bits = (u64, u32);
 
-/// All paints of a frame, as they are found to be needed.
+/// The paints of a frame while it is prepared.
 pub(crate) struct Paints<'f, 'c> {
     color: &'c dyn Fn(Decision) -> [f32; 3],
     all: Vec<'f, Paint>,
 }
 
-/// Which of them.
+/// The number of a paint.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PaintNumber(pub(crate) u32);
 
 impl<'f, 'c> Paints<'f, 'c> {
-    /// `color` tells what decisions look like.
+    /// `color` tells the colour of a decision.
     pub(crate) fn new(color: &'c dyn Fn(Decision) -> [f32; 3], arena: &'f Bump) -> Self {
         Paints {
             color,
@@ -96,8 +96,8 @@ pub(crate) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
     }
 }
 
-/// Fills no fewer samples than a vector holds. How many there are is not to be foreseen, so no
-/// branch depends on that but one and the end of the loop: vectors may lie on part of others.
+/// Fills at least as many samples as a vector holds. The processor cannot predict how many, so only
+/// one branch and the end of the loop depend on it: vectors may overlap instead.
 #[inline(always)]
 fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
     let width = V::LEN;
@@ -109,8 +109,7 @@ fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32]
         }
         return;
     }
-    // Of all others but the last none crosses from one cache line into the next: that takes twice
-    // as long.
+    // A store that crosses into another cache line takes twice as long, so the rest is aligned.
     let first = samples.as_ptr().align_offset(4 * width).min(last);
     let one = paint.from::<S, V>(simd, first);
     let two = paint.from::<S, V>(simd, first + width);
