@@ -508,3 +508,124 @@ fn wrong_usage_is_2_and_failure_is_1_with_one_line_before_anything_is_measured()
     }
     assert!(is_empty(&folder));
 }
+
+/// A folder with a program in it, `sh p.sh`, whose pictures are black.
+#[cfg(unix)]
+fn black() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let script = "while read line; do head -c 6912 /dev/zero; done";
+    std::fs::write(folder.path().join("p.sh"), script).unwrap();
+    folder
+}
+
+/// `firsthit report` on a program, with further words.
+#[cfg(unix)]
+fn report_on(command: &str, folder: &TempDir, line: &str) -> Command {
+    let line = format!("report --size 24 --frames 0..1 {line}");
+    let mut words = program(folder, &line);
+    words.args(["--program", command]);
+    words
+}
+
+#[cfg(unix)]
+#[test]
+fn another_programs_pixels_are_counted_by_what_is_wrong_with_them() {
+    let folder = black();
+    let mut command = report_on("sh p.sh", &folder, "--stage 5..6 --json a.json");
+    let text = helpers::succeeded(&command.output().unwrap(), "report --program");
+    assert!(text.contains("other renderers, over all frames"), "{text}");
+    // Of the kernels only the truth is timed beside it.
+    assert!(!text.contains("listing"), "{text}");
+    let json = json(&folder, "a.json");
+    let rows = json["renderers"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    for (row, stage) in rows.iter().zip([Stage::Shadow, Stage::Reflection]) {
+        assert_eq!(row["renderer"], "sh p.sh");
+        assert_eq!(row["stage"], stage.number());
+        assert_eq!(row["frames"], 2);
+        assert!(row["ms"]["median"].as_f64().unwrap() > 0.0);
+        let count = |name: &str| row[name].as_u64().unwrap();
+        let by_kind = row["wrong_by_kind"].as_object().unwrap();
+        let wrong: u64 = by_kind.values().map(|count| count.as_u64().unwrap()).sum();
+        assert_eq!(count("wrong_pixels"), wrong);
+        // Whatever is nowhere darker than a byte is wrong.
+        let mut bright = 0;
+        for alpha in [0, 1].map(frame_angle) {
+            let (truth, _) =
+                trace_with_decisions(Kernel::Exact, &Scene::builtin(), stage, alpha, 24);
+            let pixels = truth.samples().chunks_exact(3);
+            bright += pixels
+                .filter(|pixel| pixel.iter().any(|&sample| sample > 1.0 / 255.0))
+                .count() as u64;
+        }
+        assert_eq!(wrong, bright);
+        assert_eq!(
+            count("right_pixels") + count("rounded_pixels"),
+            2 * 576 - wrong
+        );
+        assert_eq!(by_kind["another_color"].as_u64().unwrap(), wrong);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn too_many_wrong_pixels_are_a_failure() {
+    let folder = black();
+    let run = |line: &str| report_on("sh p.sh", &folder, line).output().unwrap();
+    let few = run("--stage 2 --stage 5..6 --max-wrong 3");
+    let said = "firsthit: sh p.sh: stage 2 Spheres of builtin: 1152 wrong pixels, more than 3: see them in `firsthit view --program`, on E\n";
+    assert_eq!(helpers::failed(&few, 1, "--max-wrong 3"), said);
+    // The table comes all the same.
+    assert!(helpers::text(&few.stdout).contains("other renderers"));
+    helpers::succeeded(&run("--stage 5..6 --max-wrong 1152"), "--max-wrong 1152");
+    // So far off is nothing.
+    helpers::succeeded(
+        &run("--stage 5 --max-wrong 0 --tolerance 2"),
+        "--tolerance 2",
+    );
+
+    std::fs::write(folder.path().join("p.sh"), "exit 3").unwrap();
+    let failing = run("--stage 5 --max-wrong 1152");
+    let said = helpers::failed(&failing, 1, "a program that ends");
+    assert!(said.contains("ended with status 3"), "{said}");
+    let failing = helpers::succeeded(&run("--stage 5"), "a program that ends");
+    assert!(failing.contains("failed: sh p.sh: stage 5"), "{failing}");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_documents_own_code_earns_a_hint_at_its_slip() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(homework) = helpers::compiled(&folder, "homework.c", &[]) else {
+        return;
+    };
+    let words = "--stage 4 --json a.json --max-wrong 9999";
+    let output = report_on(&homework, &folder, words).output().unwrap();
+    let text = helpers::succeeded(&output, "report on homework.c");
+    let hint = "light falls on the wrong side of solids: in n·l, l is the way toward the light";
+    let line = format!("sample, builtin, stage 4: {hint}\n");
+    assert!(text.contains(&line), "{text}");
+    let json = json(&folder, "a.json");
+    assert_eq!(json["renderers"][0]["hints"][0], hint);
+}
+
+#[test]
+fn what_programs_are_graded_by_is_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    for (line, part) in [
+        ("--max-wrong 0", "--program"),
+        ("--tolerance 0.1", "--program"),
+        ("--program x --tolerance -1", "--tolerance"),
+        (
+            "--program x --tolerance nan",
+            "a number from 0 on is needed",
+        ),
+        ("--program x --program-timeout 0", "--program-timeout"),
+        ("--stage 6..2", "the first stage comes after the last"),
+        ("--stage 1..8", "the stages are 1 to 7"),
+    ] {
+        let said = failed(&folder, line, 2);
+        assert!(said.contains(part), "{line}: {said}");
+    }
+    assert!(is_empty(&folder));
+}

@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     max_wrong: Option<u64>,
     /// How far a program's sample may be from the true one, or from that of another decision; 1/255
     /// if not given
-    #[arg(long, value_name = "ABS", requires = "programs", value_parser = tolerance)]
+    #[arg(long, value_name = "ABS", requires = "programs", allow_hyphen_values = true, value_parser = tolerance)]
     tolerance: Option<f32>,
     /// The number of threads to measure beside one; one a core if not given
     #[arg(long, value_name = "N")]

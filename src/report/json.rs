@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Machine, Measured, Pipeline, Report, Row, Spread, Timing};
-use crate::diagnosis::Summary;
+use crate::diagnosis::{Hint, Summary};
 use crate::difference::Difference;
 
 /// The whole of it. What cannot be said as a number, an infinite error or what was not measured, is
@@ -95,6 +95,7 @@ struct JsonRenderer<'a> {
     max_abs: Option<f64>,
     mean_abs: Option<f64>,
     eight_bit_differences: Option<u64>,
+    hints: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -191,6 +192,10 @@ impl Report {
                 max_abs: difference.map(|difference| difference.max_abs),
                 mean_abs: difference.map(Difference::mean_abs),
                 eight_bit_differences: difference.map(|difference| difference.eight_bit),
+                hints: measured.map_or_else(
+                    |_| Vec::new(),
+                    |measured| measured.hints.iter().map(Hint::to_string).collect(),
+                ),
             }
         });
         rows.collect()

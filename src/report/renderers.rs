@@ -1,10 +1,11 @@
 //! Renderers that are none of the kernels: one picture of each frame, timed, and what is wrong with
 //! it.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use super::measure::{Filler, Spread};
-use crate::diagnosis::{Examination, ExaminationError, Summary};
+use crate::diagnosis::{Examination, ExaminationError, Hint, Summary};
 use crate::difference::Difference;
 use crate::{Image, Render, Scene, Stage};
 
@@ -33,6 +34,8 @@ pub(super) struct Measured {
     pub(super) summary: Summary,
     /// How far all samples are from the true ones.
     pub(super) difference: Difference,
+    /// The mistakes that explain a frame.
+    pub(super) hints: BTreeSet<Hint>,
 }
 
 /// What is measured on: a scene, a stage, the angles of the frames.
@@ -60,7 +63,7 @@ pub(super) fn measure(
     let of_this = format!("{}, {name}", frames.name);
     let (mut ms, mut fill_ms, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let (mut summary, mut difference) = (Summary::default(), Difference::default());
-    let mut failure = None;
+    let (mut hints, mut failure) = (BTreeSet::new(), None);
     for &alpha in frames.angles {
         next(&of_this);
         let start = Instant::now();
@@ -78,7 +81,9 @@ pub(super) fn measure(
             frames.tolerance,
             frames.threads,
         )?;
-        summary = summary.and(&examination.diagnosis()?.summary);
+        let diagnosis = examination.diagnosis()?;
+        summary = summary.and(&diagnosis.summary);
+        hints.extend(examination.hints(&diagnosis));
         let pairs = image.samples().iter().zip(examination.truth().samples());
         pairs.for_each(|(&sample, &truth)| difference.add(sample, truth));
         let fill = filler.seconds(image);
@@ -93,6 +98,7 @@ pub(super) fn measure(
             fill_ratio,
             summary,
             difference,
+            hints,
         }),
         (failure, _) => Err(failure.unwrap_or_else(|| "no frame".to_owned())),
     };

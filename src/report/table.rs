@@ -137,7 +137,7 @@ impl Report {
             Columns::new("other pixels", &["rounded", "right"]),
             Columns::new("samples", &["8-bit", "largest error"]),
         ]);
-        let mut failures = String::new();
+        let mut notes = String::new();
         for row in &self.renderers {
             let mut cells = vec![
                 row.scene.clone(),
@@ -164,17 +164,21 @@ impl Report {
                     ];
                     cells.extend(counts.map(|count| count.to_string()));
                     cells.push(digits(difference.max_abs));
+                    for hint in &measured.hints {
+                        let (name, stage) = (&row.renderer, row.stage.number());
+                        let _ = writeln!(notes, "{name}, {}, stage {stage}: {hint}", row.scene);
+                    }
                 }
                 Err(reason) => {
                     cells.push("failed".to_owned());
                     cells.extend(vec!["–".to_owned(); 13]);
-                    let _ = writeln!(failures, "failed: {reason}");
+                    let _ = writeln!(notes, "failed: {reason}");
                 }
             }
             table.rows.push(cells);
         }
         format!(
-            "\nother renderers, over all frames; a pixel is wrong where it shows another decision than the true one, or is more than {} off\n{table}{failures}",
+            "\nother renderers, over all frames; a pixel is wrong where it shows another decision than the true one, or is more than {} off\n{table}{notes}",
             digits(self.tolerance.into())
         )
     }

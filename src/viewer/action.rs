@@ -159,12 +159,13 @@ pub(super) const BINDINGS: &[Binding] = &[
     Binding {
         characters: &['e'],
         physical_keys: &[C::KeyE],
-        detail: "this kernel against reference",
+        detail: "the picture against the truth",
         ..Binding::new("E", "Show errors", A::Errors)
     },
     Binding {
         characters: &['k'],
         physical_keys: &[C::KeyK],
+        detail: "and after them each program",
         ..Binding::new("K", "Next kernel", A::NextKernel)
     },
     Binding {

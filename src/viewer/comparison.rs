@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::UVec2;
 
-use crate::diagnosis::{Examination, TOLERANCE};
+use crate::diagnosis::{Examination, Hint, TOLERANCE};
 use crate::difference::{error_color, steps};
 use crate::tracer::{Decision, Progress};
 use crate::{Image, Kernel, Scene, Stage, Tracer};
@@ -220,7 +220,11 @@ fn examine(
         wrong: pairs
             .map(|(&verdict, &truth)| Wrong::of_verdict(verdict, truth))
             .collect(),
-        hints: Vec::new(),
+        hints: examination
+            .hints(&diagnosis)
+            .iter()
+            .map(Hint::to_string)
+            .collect(),
         truth: examination.truth().clone(),
         image: image.clone(),
     })
