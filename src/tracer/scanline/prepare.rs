@@ -1,5 +1,4 @@
-//! A frame, from the scene as it is seen: solids and surface, with the edges and paints that they
-//! bring.
+//! Prepares a frame: its solids and its surface, with their regions and paints.
 
 pub(super) mod bodies;
 pub(super) mod builder;

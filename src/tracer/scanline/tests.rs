@@ -1,5 +1,5 @@
-//! The stages before shading, each against what it stands for: the cached spans against spans that
-//! are computed anew, and what a span shows against the pixels' own definition.
+//! The steps before shading: cached spans are compared with spans computed anew, and what a span
+//! shows with the definition of its pixels.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -69,7 +69,7 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
             let arena = Arena::default();
             let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Double, &arena);
             let name = text.lines().next().unwrap_or("built-in");
-            // What is hidden is looked for always, or never.
+            // Every frame is culled, or none.
             for cull_from in [0, u64::MAX] {
                 let (precision, level) = (Precision::Bounded, Level::baseline());
                 let tracer = RowTracer::culled_from(cull_from, &ladder, precision, level, &arena);
@@ -110,7 +110,7 @@ fn spans<P: RowPixels>(
     spans
 }
 
-/// What is visible, in words that do not depend on how tests of depth are numbered.
+/// What is visible, in words that do not depend on the numbers of depth tests.
 fn words(visible: Visible, tests: &DepthTests) -> String {
     let shown = |shown: Shown| match shown {
         Shown::Paint(paint) => format!("paint {}", paint.0),
@@ -138,7 +138,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     }
 }
 
-/// The same decision where it is not in shadow.
+/// The decision of a pixel like this in the light.
 pub(super) fn lit(decision: Decision) -> Decision {
     let lit = |seen: Seen| Seen {
         in_shadow: false,
@@ -189,7 +189,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
     each_frame(size, |name, tracer| {
         let mut scratch = Scratch::default();
         tracer.begin(&mut scratch);
-        let (mut told, mut asked) = (0, 0);
+        let (mut certain, mut in_doubt) = (0, 0);
         for row in 0..size {
             let y = tracer.frame.grid.coordinate(row);
             let mut from = 0;
@@ -201,7 +201,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);
                         let is_right = match (shown, decision) {
                             (Shown::Unknown, _) => {
-                                asked += 1;
+                                in_doubt += 1;
                                 continue;
                             }
                             (Shown::Paint(paint), _) => {
@@ -217,7 +217,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                             (Shown::Sphere { .. }, _) => false,
                         };
                         assert!(is_right, "{name}, ({column}, {row}): {decision:?}");
-                        told += 1;
+                        certain += 1;
                     }
                 }
                 from = to;
@@ -225,6 +225,6 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             assert_eq!(from, size, "{name}, row {row}");
         }
         // BandColumns that tell nothing would pass, too.
-        assert!(told > asked, "{name}: {told} told, {asked} asked");
+        assert!(certain > in_doubt, "{name}: {certain}, {in_doubt}");
     });
 }

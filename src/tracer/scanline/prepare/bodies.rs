@@ -28,8 +28,8 @@ use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::view::View;
 
-/// The solids with these outlines, and the edges that they bring. `view` is that of the scene, or
-/// the one in the mirror.
+/// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of the
+/// scene, or the one in the mirror.
 pub(crate) fn with_bodies<'f>(
     picture: &Picture<'_, Bounded>,
     view: &View<'_, Bounded>,
@@ -61,15 +61,15 @@ pub(crate) fn with_bodies<'f>(
     }
 }
 
-/// What the bodies of a view have in common.
+/// Makes the bodies of a view's solids.
 struct Bodies<'p, 's> {
     picture: &'p Picture<'s, Bounded>,
     view: &'p View<'s, Bounded>,
     mirrored: bool,
-    /// Whether points can be in shadow.
+    /// Whether the stage has shadows.
     shadows: bool,
     surface: SurfaceShadow<'p>,
-    /// Found when the first sphere asks for it.
+    /// Made for the first sphere.
     lighting: OnceCell<Lighting>,
 }
 
@@ -85,7 +85,7 @@ impl<'p, 's> Bodies<'p, 's> {
         }
     }
 
-    /// The body of a solid, with what it brings of edges and paints.
+    /// The body of a solid, whose regions and paints are added.
     fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
         match (self.view.spheres.get(solid.number), solid.outline.ellipse()) {
             (Some(sphere), Some(outline)) => self.sphere(solid.number, sphere, outline, parts),

@@ -1,9 +1,9 @@
 //! Hidden-surface culling: in which rows a solid, a shadow or a mirror image can be seen at all.
 //!
-//! The screen is cut into tiles. A solid whose outline covers a tile hides, in that tile, whatever
-//! lies behind the farthest point that eye rays enter it at. What is hidden in all tiles that it
-//! reaches brings no edge. This decides nothing about pixels, so it need not be sharp; it must
-//! never hide what is seen.
+//! The screen is cut into tiles. If the outline of a solid covers a tile, the solid hides there
+//! whatever lies behind the farthest point at which eye rays enter it. A region that is hidden in all
+//! its tiles is left out. Culling decides about no pixel: it may miss what is hidden, but never hides
+//! what is seen.
 
 use bumpalo::Bump;
 use fearless_simd::{Level, Simd, dispatch};
@@ -12,9 +12,9 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
 
-/// There are so many tiles side by side, and so many on top of each other, or fewer: a tile is a
-/// multiple of [`ROWS`] high.
+/// The most tiles in a row of tiles.
 const TILES_IN_A_ROW: u32 = 16;
+/// The most rows of tiles. The height of a tile is a multiple of [`ROWS`].
 const TILE_ROWS: u32 = 64;
 
 /// A half-open range of rows.
@@ -24,12 +24,14 @@ pub(crate) type Rows = (u32, u32);
 pub(crate) struct Tiles<'f> {
     grid: Grid,
     level: Level,
-    /// Columns and rows of a tile.
+    /// The columns of a tile.
     width: u32,
+    /// The rows of a tile.
     height: u32,
-    /// For each tile, from the left in rows of tiles from the bottom: what enters a solid behind this
-    /// depth is hidden.
-    seen_before: &'f mut [f64],
+    /// For each tile, from the left and row by row from the bottom: the depth behind which all is
+    /// hidden.
+    hidden_behind: &'f mut [f64],
+    /// The number of tiles in a row of tiles.
     across: u32,
 }
 
@@ -53,20 +55,20 @@ impl<'f> Tiles<'f> {
             level,
             width,
             height,
-            seen_before: arena.alloc_slice_fill_copy((across * up) as usize, f64::INFINITY),
+            hidden_behind: arena.alloc_slice_fill_copy((across * up) as usize, f64::INFINITY),
             across,
         }
     }
 
     fn up(&self) -> u32 {
-        self.seen_before.len() as u32 / self.across
+        self.hidden_behind.len() as u32 / self.across
     }
 
     fn number(&self, across: u32, up: u32) -> usize {
         (up * self.across + across) as usize
     }
 
-    /// The rows of tiles that rows lie in.
+    /// The rows of tiles in which these rows lie.
     fn rows_of_tiles(&self, (from, to): Rows) -> std::ops::Range<u32> {
         from / self.height..to.div_ceil(self.height).min(self.up())
     }
@@ -138,30 +140,30 @@ impl<'f> Tiles<'f> {
         from.div_ceil(self.width)..end
     }
 
-    /// Hides what is behind a solid in the tiles that its outline covers.
+    /// Hides what lies behind a solid, in the tiles that its outline covers.
     pub(crate) fn hide_behind(&mut self, outline: &Region<'_>, depth: &Depth<'_>) {
         for up in self.rows_of_tiles(outline.rows()) {
             let columns = self.columns(outline, up);
             for across in self.covered(columns.certain) {
                 let (_, upper) = depth.bounds(None, self.rectangle(across, up));
-                let before = &mut self.seen_before[(up * self.across + across) as usize];
+                let before = &mut self.hidden_behind[(up * self.across + across) as usize];
                 *before = before.min(upper);
             }
         }
     }
 
-    /// The rows in which a solid can be seen: between the first tile and the last in which not all
-    /// of it is hidden.
+    /// The rows in which a solid can be seen, from the first tile to the last in which it is not
+    /// hidden.
     pub(crate) fn rows_of_solid(&self, outline: &Region<'_>, depth: &Depth<'_>) -> Rows {
         self.rows_where(outline, |across, up| {
             let (lower, _) = depth.bounds(None, self.rectangle(across, up));
-            // Where the depth is no number, it is seen.
-            let is_hidden = lower > self.seen_before[self.number(across, up)];
+            // A depth that is a NaN hides nothing.
+            let is_hidden = lower > self.hidden_behind[self.number(across, up)];
             !is_hidden
         })
     }
 
-    /// The rows of a region between the first tile and the last in which something holds.
+    /// The rows of a region from the first tile to the last for which `holds` is true.
     fn rows_where(&self, region: &Region<'_>, holds: impl Fn(u32, u32) -> bool) -> Rows {
         let is_seen = |up: &u32| {
             let columns = self.columns(region, *up);
@@ -180,8 +182,8 @@ impl<'f> Tiles<'f> {
         (from.max(begin), to.min(end))
     }
 
-    /// The tiles in which a region may be seen that is no nearer than a depth at each Y: in those,
-    /// everything is seen; in all others, nothing.
+    /// Tiles for what is seen through a region, which is at least as far away as `min_depth` tells
+    /// for each Y. In tiles where the region may be seen, everything is seen; in others, nothing.
     pub(crate) fn seen_through(
         &self,
         region: &Region<'_>,
@@ -189,25 +191,25 @@ impl<'f> Tiles<'f> {
         arena: &'f Bump,
     ) -> Tiles<'f> {
         let tiles = Tiles::new(self.grid, self.level, arena);
-        tiles.seen_before.fill(f64::NEG_INFINITY);
+        tiles.hidden_behind.fill(f64::NEG_INFINITY);
         for up in self.rows_of_tiles(region.rows()) {
             let columns = self.columns(region, up);
             for across in self.reached(columns.possible) {
                 let [low, high] = self.rectangle(across, up).y;
                 let number = self.number(across, up);
-                let is_hidden = min_depth(low).min(min_depth(high)) > self.seen_before[number];
+                let is_hidden = min_depth(low).min(min_depth(high)) > self.hidden_behind[number];
                 if !is_hidden {
-                    tiles.seen_before[number] = f64::INFINITY;
+                    tiles.hidden_behind[number] = f64::INFINITY;
                 }
             }
         }
         tiles
     }
 
-    /// Leaves out the rows in which shadows on one receiver make no difference: a tile that one of
-    /// them covers needs no other.
+    /// Leaves out rows in which shadows on one receiver make no difference: in a tile that a shadow
+    /// covers, the others are not needed.
     pub(crate) fn restrict_shadows(&self, shadows: &mut [Region<'_>], arena: &Bump) {
-        let covering = arena.alloc_slice_fill_copy(self.seen_before.len(), u32::MAX);
+        let covering = arena.alloc_slice_fill_copy(self.hidden_behind.len(), u32::MAX);
         for (shadow, region) in shadows.iter().enumerate() {
             for up in self.rows_of_tiles(region.rows()) {
                 for across in self.covered(self.columns(region, up).certain) {
@@ -220,7 +222,7 @@ impl<'f> Tiles<'f> {
             let rows = self.rows_where(region, |across, up| {
                 let number = self.number(across, up);
                 let first = covering[number];
-                self.seen_before[number] > f64::NEG_INFINITY
+                self.hidden_behind[number] > f64::NEG_INFINITY
                     && (first == u32::MAX || first == shadow as u32)
             });
             region.restrict(rows);

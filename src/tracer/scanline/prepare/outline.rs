@@ -1,4 +1,4 @@
-//! The solids of a view, before it is known what of them is seen.
+//! The outlines and depths of a view's solids, on which culling works.
 
 use bumpalo::Bump;
 
@@ -17,9 +17,9 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
 use crate::tracer::view::View;
 
-/// A solid as eye rays meet it.
+/// The outline of a solid, and its depth.
 pub(crate) struct Outlined<'f> {
-    /// Its number among all of the scene.
+    /// Its number in the scene.
     pub(crate) number: usize,
     pub(crate) side: Side,
     pub(crate) outline: Region<'f>,
@@ -32,12 +32,12 @@ pub(crate) struct Outlined<'f> {
 pub(crate) struct Outlines<'f> {
     pub(crate) mirrored: bool,
     pub(crate) all: bumpalo::collections::Vec<'f, Outlined<'f>>,
-    /// How many pixels their extents have.
+    /// The sum of the areas of their extents, in pixels.
     area: u64,
 }
 
 impl<'f> Outlines<'f> {
-    /// Those of a view; of one in the mirror, `within` the extent of what mirrors it.
+    /// The outlines of a view. `within` is the extent of the surface, for the view in the mirror.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         view: &View<'_, Bounded>,
@@ -68,9 +68,9 @@ impl<'f> Outlines<'f> {
             }
             let area = extent.area(grid.size);
             let is_seen = area > 0
-                // What lies inside of another solid hides behind that, where both take part.
+                // From this stage on all solids take part, and a hidden one is never seen.
                 && !(facts.hidden[number] && stage >= Stage::Shading)
-                // Below the surface nothing is mirrored.
+                // The surface mirrors nothing that is below.
                 && !(mirrored && side == Side::Below)
                 && within.is_none_or(|within| extent.meets(within));
             if !is_seen {
@@ -116,7 +116,7 @@ impl<'f> Outlines<'f> {
         outlines
     }
 
-    /// How many solids a pixel may show, in the mean over all pixels.
+    /// The mean number of extents that hold a pixel.
     pub(crate) fn depth_complexity(&self, grid: Grid) -> u64 {
         self.area / (u64::from(grid.size) * u64::from(grid.size))
     }
@@ -124,8 +124,7 @@ impl<'f> Outlines<'f> {
     /// Leaves out the solids that others hide in all tiles.
     pub(crate) fn cull(&mut self, tiles: &mut Tiles<'_>) {
         for solid in &self.all {
-            // What the surface mirrors begins there, and that of a solid which goes through it may
-            // not be met.
+            // Mirrored rays begin at the surface, and may miss a solid that goes through it.
             if !self.mirrored || solid.side == Side::Above {
                 tiles.hide_behind(&solid.outline, &solid.depth);
             }

@@ -1,4 +1,4 @@
-//! A frame as its rows are traced from: plain data, and all that the stages know of it.
+//! A frame, prepared for its rows: plain data, which is all that the later steps know of it.
 
 use bumpalo::Bump;
 use fearless_simd::Level;
@@ -27,13 +27,13 @@ pub(crate) struct Prepared<'f> {
     direct: PreparedSolids<'f>,
     /// How many spheres are shaded.
     pub(crate) shaded_spheres: usize,
-    /// The picture of code 2-1, where that is the stage.
+    /// The paints of Code 2-1, in the stage that shows it.
     pub(crate) quadrants: Option<[PaintNumber; 4]>,
 }
 
 impl<'f> Prepared<'f> {
-    /// `color` tells what decisions look like. What is hidden is looked for where a pixel may show
-    /// `cull_from` solids.
+    /// `color` tells the colour of a decision. Frames with a mean of `cull_from` solids behind a pixel
+    /// are culled.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
@@ -51,8 +51,8 @@ impl<'f> Prepared<'f> {
         };
         let background = parts.paints.of(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
-        let is_deep = outlines.depth_complexity(grid) >= cull_from;
-        let tiles = is_deep.then(|| {
+        let is_crowded = outlines.depth_complexity(grid) >= cull_from;
+        let tiles = is_crowded.then(|| {
             let mut tiles = Tiles::new(grid, level, arena);
             outlines.cull(&mut tiles);
             tiles
@@ -75,7 +75,7 @@ impl<'f> Prepared<'f> {
         }
     }
 
-    /// The solids, or those in the mirror. Without a mirror nothing asks for these.
+    /// The solids seen directly, or in the mirror if there is one.
     pub(crate) fn solids(&self, mirrored: bool) -> &PreparedSolids<'f> {
         let in_mirror = self
             .surface

@@ -22,12 +22,12 @@ use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
-/// The surface as it keeps light from the solids of a view.
+/// The shadow of the surface on the solids of a view.
 pub(crate) struct SurfaceShadow<'p> {
     surface: Option<&'p Surface<Bounded>>,
     sides: &'p [Side],
     to_light: Vector<Bounded>,
-    /// The sign of how it rises: in the mirror light comes from below where it comes from above.
+    /// The sign of the rise of `to_light`. In the mirror it is reversed.
     climb: Ordering,
     mirrored: bool,
 }
@@ -49,7 +49,7 @@ impl<'p> SurfaceShadow<'p> {
         }
     }
 
-    /// The half-spaces that its shadow on a solid lies in, if any point of that can be in it.
+    /// The half-spaces whose intersection holds the shadow; `None` if the solid is not in it.
     fn on(&self, solid: usize) -> Option<impl Iterator<Item = HalfSpace<Bounded>>> {
         let toward = match self.sides[solid] {
             Side::Above => Some(Ordering::Less),
@@ -69,7 +69,7 @@ impl<'p> SurfaceShadow<'p> {
         Some(surface.shadow(self.to_light, self.climb))
     }
 
-    /// As a caster on a sphere.
+    /// The surface as a caster on a sphere.
     pub(crate) fn on_sphere<'f>(
         &self,
         solid: usize,
@@ -83,7 +83,7 @@ impl<'p> SurfaceShadow<'p> {
         Some(Caster::Polyhedron(collect(arena, forms.chain(unknown))))
     }
 
-    /// As a region of the pixels that stand for points of a plane.
+    /// The shadow as a region: the pixels whose points on a plane are in it.
     pub(crate) fn on_plane<'f>(
         &self,
         solid: usize,
@@ -102,8 +102,8 @@ impl<'p> SurfaceShadow<'p> {
     }
 }
 
-/// The pixels whose points on a plane are in the shadows of `casters`. Of a caster that `is_ahead`
-/// of all the plane's pixels it is not asked whether it is.
+/// The shadows of `casters` on a plane, each as a region: the pixels whose points are in it. A caster
+/// for which `is_ahead` is true lies ahead of all rays from the plane to the light.
 pub(crate) fn shadows_on<'f>(
     plane: &PixelPlane,
     view: &View<'_, Bounded>,
@@ -161,7 +161,7 @@ pub(crate) fn casters_on<'f>(
     casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
         match view.spheres.get(caster) {
-            // A ray leaves its own sphere, also where that is listed twice.
+            // No sphere shadows itself, nor a sphere that is listed twice.
             Some(sphere) if sphere.support == support => None,
             Some(sphere) => {
                 let (moment, before) = row_sphere.moment(sphere.center, &to_light, &own);

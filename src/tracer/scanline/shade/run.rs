@@ -32,7 +32,7 @@ pub(crate) struct Run<'r> {
     /// The columns in each zone but the outermost, and those that may have a highlight.
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
-    /// Whether all pixels face the light, or no stage with shadows is drawn.
+    /// Whether all pixels face the light, or the stage has no shadows.
     pub(crate) is_facing: bool,
     pub(crate) samples: &'r mut [f32],
     pub(crate) decisions: Option<&'r mut [Decision]>,

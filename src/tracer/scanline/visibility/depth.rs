@@ -1,8 +1,8 @@
 //! The depth test: which of several solids is nearest where no plane keeps them apart.
 //!
-//! It bounds the depths of each solid over an interval of columns. Where the bounds overlap, the interval is
-//! halved, down to single pixels, which are then asked by themselves. A half is asked only about
-//! the solids that can be in front there.
+//! The test bounds the depth of each solid over an interval of columns. If the bounds overlap, the
+//! interval is halved, down to single pixels, which are then decided by themselves. A half is tested
+//! only against the solids that can be in front there.
 
 use crate::scene::Side;
 use crate::tracer::scanline::grid::Columns;
@@ -10,11 +10,11 @@ use crate::tracer::scanline::prepare::depth::Rectangle;
 use crate::tracer::scanline::prepare::prepared::Prepared;
 use crate::tracer::scanline::visibility::visible::{DepthTest, DepthTests, Shown, Visible};
 
-/// The parts of a span that a row has settled, and what that needs, kept for the next span.
+/// The parts of a span, each settled by the depth test, and memory that is kept from span to span.
 #[derive(Default)]
 pub(crate) struct Settled {
     parts: Vec<(Columns, Shown)>,
-    /// The solids that can be in front, interval within interval: the innermost last.
+    /// A stack: for each halving that is under way, the solids that can be in front.
     near: Vec<Near>,
 }
 
@@ -30,12 +30,12 @@ enum Front {
     Candidate(usize),
     /// The surface, or where that is not met either, the background.
     Rest,
-    /// Not known: it begins before this depth.
+    /// In doubt: it begins before this depth.
     Before(f64),
 }
 
 impl Settled {
-    /// What a row shows in these columns, from the left, where it has to decide about that.
+    /// What a row shows in the columns of a span, from the left.
     pub(crate) fn settle(
         &mut self,
         frame: &Prepared<'_>,
@@ -71,7 +71,7 @@ impl Settled {
         }
     }
 
-    /// The same by a test, among the solids in `near` from one on.
+    /// Settles columns by a test among the solids in `near` from number `first` on.
     fn add_first(
         &mut self,
         frame: &Prepared<'_>,
@@ -110,7 +110,7 @@ impl Settled {
     }
 }
 
-/// What is in front in all these columns, among the solids `near`, of which the depths are bounded.
+/// What is in front in all these columns, among the solids `near`. Updates their lower bounds.
 fn front(
     frame: &Prepared<'_>,
     test: &DepthTest<'_>,
@@ -124,7 +124,8 @@ fn front(
         x: [columns.0, columns.1 - 1].map(|column| frame.grid.coordinate(column)),
         y: [y, y],
     };
-    // The candidate is what ends first; it is in front if all others begin behind that.
+    // The candidate has the smallest upper bound. It is in front if all other lower bounds are
+    // larger.
     let nothing = (f64::INFINITY, f64::INFINITY);
     let rest = surface.filter(|_| test.surface).unwrap_or(nothing);
     let mut candidate = (Front::Rest, rest);
@@ -134,7 +135,7 @@ fn front(
         let solid = view.solid(other.solid);
         let support = solid.depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
-        // Where they are the same sphere, or faces in the same plane, the first is seen.
+        // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
             && let first = &test.solids[*first]
             && support.is_some()
@@ -145,7 +146,7 @@ fn front(
         }
         let (lower, upper) = solid.depth.bounds(other.front_face, interval);
         *kept = lower;
-        // The rays that the surface mirrors begin there: a solid before that is not met.
+        // Mirrored rays begin at the surface, and miss a solid that ends before.
         if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)
             && lower <= to
         {
@@ -164,7 +165,7 @@ fn front(
         }
     }
     let (front, (_, upper)) = candidate;
-    // Behind everything there is nothing.
+    // The background is in front if nothing else is there.
     let is_alone = others_begin == f64::INFINITY;
     if others_begin > upper || (is_alone && matches!(front, Front::Rest)) {
         front
@@ -173,7 +174,7 @@ fn front(
     }
 }
 
-/// Both halves of some columns, if there are more than one.
+/// Both halves of an interval of more than one column.
 fn halves((from, to): Columns) -> Option<[Columns; 2]> {
     let middle = from + (to - from) / 2;
     (to - from > 1).then_some([(from, middle), (middle, to)])

@@ -18,7 +18,7 @@ pub(crate) fn visible(
     let Some(met) = coverage.direct.certain() else {
         return Visible::UNKNOWN;
     };
-    // What is above the surface hides it.
+    // A solid above the surface hides the surface.
     let hides = |&solid: &SolidIndex| direct.solid(solid).side == Side::Above;
     let meets_surface = if met.iter().any(hides) {
         Some(false)
@@ -48,7 +48,7 @@ pub(crate) fn visible(
     }
 }
 
-/// The same where the surface is met, and no solid in front of it.
+/// What a gap shows where the surface is in front of all solids seen directly.
 fn visible_surface(
     surface: &PreparedSurface<'_>,
     coverage: &Coverage,
@@ -67,8 +67,8 @@ fn visible_surface(
     if met.is_empty() {
         return itself;
     }
-    // A solid that goes through the surface may be met before the surface, where its part
-    // below would be mirrored: the test of depth decides.
+    // The line of a mirrored ray may meet a solid that goes through the surface before the surface,
+    // where the ray has not begun: the depth test decides.
     let goes_through = |&solid: &SolidIndex| mirrored.solid(solid).side == Side::Across;
     if !met.iter().any(goes_through)
         && let Some(solid) = mirrored.separation.first(met)
@@ -116,7 +116,7 @@ fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
     }
 }
 
-/// The front face that eye rays enter last.
+/// The index of the front face that eye rays enter last.
 fn last_entered(pairs: &[Pair], coverage: &Coverage) -> Option<usize> {
     let mut last = 0;
     for pair in pairs {

@@ -1,8 +1,8 @@
 //! Which of two solids is in front of the other wherever both are met.
 //!
-//! All eye rays have one direction. Two convex solids that a plane keeps apart are met on either side
-//! of it, so every ray that meets both meets first the one that it is on the side of before it
-//! crosses the plane. This needs no depth, and is known for a whole frame.
+//! All eye rays have one direction, so they cross a plane that separates two solids from the same
+//! side. Every ray that meets both meets the solid on that side first. This needs no depth, and holds
+//! for a whole frame.
 
 use bumpalo::Bump;
 

@@ -3,7 +3,7 @@
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
-/// What neighbouring columns show.
+/// What all columns of an interval show.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     Paint(PaintNumber),
@@ -19,9 +19,9 @@ pub(crate) enum Shown {
 /// What a gap shows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Visible {
-    /// The same in every row.
+    /// One thing in every row.
     Only(Shown),
-    /// The nearest of some solids, which the row decides by the depth test of this number.
+    /// The nearest of some solids, by the depth test of this number: each row settles it.
     First(u32),
 }
 
@@ -79,8 +79,9 @@ pub(crate) struct Candidate {
     pub(crate) shown: Shown,
 }
 
-/// Several solids, of which one is in front.
+/// A depth test among several solids.
 pub(crate) struct DepthTest<'p> {
+    /// Whether the solids are seen in the mirror.
     pub(crate) mirrored: bool,
     pub(crate) solids: &'p [Candidate],
     /// Whether the surface may be in front of them.
@@ -89,7 +90,7 @@ pub(crate) struct DepthTest<'p> {
     pub(crate) rest: Visible,
 }
 
-/// The same, as it is kept: where its solids end among those of all tests.
+/// A depth test as it is kept: its candidates are a range of those of all tests.
 struct Stored {
     mirrored: bool,
     from: usize,
@@ -98,10 +99,10 @@ struct Stored {
     rest: Visible,
 }
 
-/// More tests than this are forgotten, and found anew where they are still needed.
+/// Beyond so many tests all are forgotten, and those still needed are made anew.
 const MANY: usize = 4096;
 
-/// What rows have to decide.
+/// The depth tests of all gaps.
 #[derive(Default)]
 pub(crate) struct DepthTests {
     tests: Vec<Stored>,
@@ -114,12 +115,12 @@ impl DepthTests {
         self.solids.clear();
     }
 
-    /// Whether there are so many tests that all are to be forgotten: most are not needed any more.
+    /// Whether all tests should be forgotten: most of so many are not needed any more.
     pub(crate) fn is_full(&self) -> bool {
         self.tests.len() > MANY
     }
 
-    /// Leaves it to the row what is in front.
+    /// Adds a test, which leaves it to each row what is in front.
     pub(crate) fn defer(
         &mut self,
         mirrored: bool,
