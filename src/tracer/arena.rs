@@ -1,19 +1,17 @@
-//! The memory of a frame: everything that a frame is made of lies side by side, and the next frame
-//! lies in the same place.
+//! The memory of a frame: all its parts lie side by side, and the next frame reuses the memory.
 //!
-//! Nothing here is dropped; what frames are made of owns nothing.
+//! The parts of frames own nothing, so none is dropped.
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
 use bumpalo_herd::{Herd, Member};
 
-/// What frames lie in, one after the other. After the first few the system is asked for no more
-/// memory.
+/// The memory of one frame after the other. After the first few, it does not grow any more.
 #[derive(Default)]
 pub(super) struct Arena {
-    /// For what every frame needs, made before its first row.
+    /// For the parts that are made before the first row.
     pub(super) frame: Bump,
-    /// For what threads find to be needed while they trace.
+    /// For the parts that threads make while they trace.
     pub(super) late: Herd,
 }
 
@@ -25,9 +23,9 @@ impl Arena {
     }
 }
 
-/// Where slices can be laid down that live as long as a frame.
+/// Memory for slices that live as long as a frame.
 pub(super) trait Room<'f> {
-    /// All items, side by side.
+    /// A slice of all items.
     fn lay<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T];
 }
 
@@ -43,7 +41,7 @@ impl<'f> Room<'f> for Member<'f> {
     }
 }
 
-/// As many items as there are, side by side.
+/// A slice of all items, however many there are.
 pub(super) fn collect<T>(arena: &Bump, items: impl IntoIterator<Item = T>) -> &[T] {
     let mut all = Vec::new_in(arena);
     all.extend(items);

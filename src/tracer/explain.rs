@@ -1,7 +1,7 @@
 //! One pixel, worked through: the text of `firsthit explain` and of the viewer's inspector.
 //!
-//! Every number in it comes from the functions that trace, with the arithmetic that settled the
-//! pixel; only for printing are they turned back from view space and shortened to nine digits.
+//! Every number comes from the functions that trace, in the arithmetic that settled the pixel. For
+//! printing, numbers are turned back from view space and shortened to nine digits.
 
 use std::fmt::{self, Write as _};
 
@@ -40,7 +40,7 @@ impl fmt::Display for Short {
     }
 }
 
-/// Three of them.
+/// Three numbers with nine significant digits.
 struct Triple([f64; 3]);
 
 impl fmt::Display for Triple {
@@ -434,7 +434,7 @@ pub(super) fn outcome(scene: &Scene, decision: Decision, samples: [f32; 3]) -> S
     text + &samples_of(samples)
 }
 
-/// What came out: the floats with all their digits, the bytes of the display.
+/// The samples with all their digits, and the bytes of the display.
 fn samples_of(samples: [f32; 3]) -> String {
     let mut text = String::new();
     let [r, g, b] = samples;

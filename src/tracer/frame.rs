@@ -6,8 +6,8 @@
 //! picture's centre: x right, y up, z toward the eye, a scene's length 1 being 3N/2. There the
 //! pixel (x, y) lies on the screen at e = 3 (x − N/2, y − N/2, N/2), the eye looks along
 //! −(0, 3, 10), which is −10 w, and a ray reaches the surface at t = (y − N/2) − (N/2) · height.
-//! Directions need no unit length, so nothing is rounded that need not be: pixels and eye
-//! rays are small whole or half numbers, and at α = 0 so is a scene of short binary fractions.
+//! Directions need no unit length. So pixels and eye rays are small whole or half numbers, which
+//! nothing rounds, and at α = 0 a scene of short binary fractions is, too.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use super::vector::Vector;
 use crate::number::Real;
 use crate::scene::Scene;
 
-/// How the scene is turned and scaled into view space.
+/// The rotation and the scale from the scene into view space.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<R> {
     pub(super) sin: R,
@@ -38,7 +38,7 @@ impl<R: Real> Frame<R> {
         }
     }
 
-    /// The height of the plane that reflects, in view space.
+    /// The height of the surface's plane in view space, if there is one.
     pub(super) fn mirror(&self, scene: &Scene) -> Option<R> {
         scene
             .surface()
@@ -103,7 +103,7 @@ impl<R: Real> Frame<R> {
             } else {
                 turned
             },
-            // No turning changes it, and without one less is rounded.
+            // Turning does not change a length, but would round it.
             squared_length: Vector::exact(direction).squared_length(),
         }
     }

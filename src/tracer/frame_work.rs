@@ -1,4 +1,4 @@
-//! A frame in the arithmetic of a kernel, for whatever is to be done with it.
+//! Work on a frame in the arithmetic of a kernel.
 
 use super::arena::Arena;
 use super::error::TraceError;
@@ -9,22 +9,22 @@ use super::scanline::Precision;
 use crate::scene::Scene;
 use crate::stage::Stage;
 
-/// What is done with a frame.
+/// Work on a frame, generic over the arithmetic.
 pub(super) trait FrameWork {
     type Output;
 
-    /// Where the kernel traces whole rows; what lives as long as the frame lies in the arena.
+    /// Does the work for a kernel that traces rows. `arena` holds what lives as long as the frame.
     fn by_rows(self, pixels: &impl RowPixels, precision: Precision, arena: &Arena) -> Self::Output;
 
-    /// Where it goes pixel by pixel.
+    /// Does the work for a kernel that traces pixel by pixel.
     fn by_pixels(self, pixels: &impl Pixels) -> Self::Output;
 }
 
-/// Does it with a frame: a scene in a stage at an angle α, of N × N pixels.
+/// Does `work` on a frame: a scene in a stage at an angle α, of N × N pixels.
 ///
 /// # Errors
 /// [`TraceError::Listing`] where the kernel is [`Kernel::Listing`] and the scene not of the
-/// document's shape; nothing is done then.
+/// document's shape; then no work is done.
 pub(super) fn with_frame<W: FrameWork>(
     kernel: Kernel,
     (scene, stage, alpha, size): (&Scene, Stage, f64, u32),

@@ -1,14 +1,13 @@
-//! How often the cheaper arithmetic did not do.
+//! The count of pixels in doubt.
 
 use super::ladder::Rung;
 
-/// How many pixels of a frame were left in doubt by the cheaper arithmetic of the kernels that are
-/// right.
+/// How many pixels of a frame f64 with bounds left in doubt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InDoubt {
-    /// Settled by double-doubles only.
+    /// Pixels that double-doubles settled.
     pub double_double: u64,
-    /// Settled by arbitrary precision only.
+    /// Pixels that double-doubles left in doubt, and arbitrary precision settled.
     pub arbitrary: u64,
 }
 

@@ -6,15 +6,15 @@ pub enum Kernel {
     /// Every decision as in exact arithmetic, every sample the true value correctly rounded.
     #[default]
     Exact,
-    /// Every pixel in f32: careful formulas, no bounds, no safety net. Where borders cross a row is
-    /// computed once a row, in f64.
+    /// Every pixel in f32, by careful formulas without bounds. The edges of regions are computed in
+    /// f64, once a row.
     Fast,
     /// The same in f64, rounded to f32 once at the end.
     Double,
     /// The document's listings as printed, slips included: the baseline. Two spheres, one
     /// tetrahedron and a surface only.
     Listing,
-    /// What errors are measured against: as exact, but with no f64 on the way.
+    /// The reference that errors are measured against: as exact, but never by f64.
     Reference,
 }
 

@@ -260,7 +260,7 @@ impl Pixels for Listing<'_> {
         ((decision, samples), Rung::Double)
     }
 
-    /// Its steps are in the listings: what came out is all there is to say.
+    /// The outcome alone: the steps are in the listings.
     fn explain(&self, _: u32, _: u32, (decision, samples): Pixel) -> String {
         explain::outcome(self.scene, decision, samples)
     }

@@ -1,4 +1,4 @@
-//! The colours of a frame that many pixels share.
+//! The colours that many pixels of a frame share.
 
 use std::sync::OnceLock;
 
@@ -16,7 +16,7 @@ pub(super) struct Palette<'f> {
 /// Four quadrants, the background, the surface and its shadow.
 const WITHOUT_SOLIDS: usize = 7;
 
-/// Four faces in the light, a sphere without light and shadow, and either in shadow.
+/// Four faces in the light, a sphere in flat colour, and either solid in shadow.
 const OF_A_SOLID: usize = 6;
 
 impl<'f> Palette<'f> {
@@ -30,7 +30,7 @@ impl<'f> Palette<'f> {
         }
     }
 
-    /// The slot of a decision; of a sphere in the light, that of its unshaded colour.
+    /// The slot of a decision.
     pub(super) fn get(&self, decision: Decision) -> &OnceLock<[f32; 3]> {
         let of_solid = |mirrored: usize, seen: Seen| {
             let slot = match seen.face {

@@ -1,4 +1,4 @@
-//! One pixel: first hit, shading, shadow, mirror, each as far as the stage asks for it.
+//! One pixel: first hit, shading, shadow and mirror, as far as the stage has them.
 
 use std::cmp::Ordering;
 use std::iter;
@@ -18,7 +18,7 @@ use crate::number::{Real, all, any};
 use crate::scene::Scene;
 use crate::stage::Stage;
 
-/// Everything about a frame that its pixels share.
+/// What all pixels of a frame share.
 pub(super) struct Picture<'f, R> {
     pub(super) scene: &'f Scene,
     pub(super) stage: Stage,
@@ -32,7 +32,7 @@ pub(super) struct Picture<'f, R> {
 /// The surface as pixels show it.
 pub(super) struct SeenSurface<'f, R> {
     pub(super) square: Surface<R>,
-    /// Where it can be seen.
+    /// The pixels that may show it.
     pub(super) extent: Extent,
     casters: CastersOnSurface<'f>,
     color: Vector<R>,
@@ -47,15 +47,15 @@ pub(super) struct Mirror<'f, R> {
     pub(super) reflectance: R,
 }
 
-/// Whether anything is mirrored in this stage.
+/// Whether this stage has mirror images.
 pub(super) fn mirrors(scene: &Scene, stage: Stage) -> bool {
     stage >= Stage::Reflection && scene.surface().is_some()
 }
 
-/// A pixel: what was decided, and the colour that follows from it.
+/// A pixel: its decision and its samples.
 pub(super) type Pixel = (Decision, [f32; 3]);
 
-/// What was decided, and the normal of a sphere in the light.
+/// A decision, with the normal of a sphere in the light.
 type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
 
 /// Where solids are hit and what lies in shadow: as it is right, or as somebody has it who makes a
@@ -101,7 +101,7 @@ struct Right;
 impl<R: Real> Rules<R> for Right {}
 
 impl<'f, R: Real> Picture<'f, R> {
-    /// `signs` and `extents` are those of the same frame.
+    /// `signs` and `extents` must be those of the same frame.
     pub(super) fn new(
         scene: &'f Scene,
         stage: Stage,
@@ -138,8 +138,8 @@ impl<'f, R: Real> Picture<'f, R> {
         }
     }
 
-    /// What the pixel at `column` from the left and `row` from the bottom shows, and the normal
-    /// there where it shows a sphere in the light: all else that is seen has one colour.
+    /// The decision of the pixel at `column` from the left and `row` from the bottom. If it shows a
+    /// sphere in the light, also the normal: all other decisions have one colour.
     pub(super) fn decide(&self, column: u32, row: u32) -> Decided<R> {
         self.decide_by(&Right, column, row)
     }
@@ -180,7 +180,7 @@ impl<'f, R: Real> Picture<'f, R> {
         self.color(decision, Some(&hit.normal)).map(Some)
     }
 
-    /// The samples of what was decided: where `normal` is `None`, of all pixels that show it.
+    /// The samples of a decision: with `normal`, of one pixel; without, of all that show it.
     pub(super) fn color(
         &self,
         decision: Decision,
@@ -280,7 +280,7 @@ impl<'f, R: Real> Picture<'f, R> {
         {
             let (depth, point) = self.surface_point(surface, &ray, row);
             let hides = || match &hit {
-                // Of a solid and the surface at the same depth, the solid is seen.
+                // At equal depths, the solid is seen, and not the surface.
                 Some((_, hit)) if hit.support == surface.square.support => Ok(false),
                 Some((_, hit)) => (hit.depth - depth).sign().map(Ordering::is_gt),
                 None => Ok(true),
@@ -300,8 +300,8 @@ impl<'f, R: Real> Picture<'f, R> {
         })
     }
 
-    /// Where an eye ray meets the surface's plane: its parameter, and the point, whose height is
-    /// known without any rounding.
+    /// The parameter and the point at which an eye ray meets the surface's plane. The point's height
+    /// is not rounded.
     pub(super) fn surface_point(
         &self,
         surface: &SeenSurface<'_, R>,
@@ -319,7 +319,7 @@ impl<'f, R: Real> Picture<'f, R> {
         )
     }
 
-    /// The surface where it is seen: in shadow, mirroring, or plain.
+    /// The decision where the surface is in front: in shadow, mirroring, or plain.
     fn surface_at(
         &self,
         rules: &impl Rules<R>,
@@ -332,7 +332,7 @@ impl<'f, R: Real> Picture<'f, R> {
             return Ok((Decision::SurfaceInShadow, None));
         }
         if let Some(mirror) = &surface.mirror {
-            // The eye's ray goes on straight into the reflected scene.
+            // In the reflected scene, the mirrored ray is the continuation of the eye ray.
             let ray = Line {
                 origin: point,
                 direction: looking(),
@@ -412,7 +412,7 @@ fn seen<R>(solid: usize, hit: &Hit<R>, in_shadow: bool) -> Seen {
     }
 }
 
-/// The normal that a colour follows: that of a sphere in the light.
+/// The normal, if the colour depends on it: that of a sphere in the light.
 fn normal_of<R: Copy>(seen: Seen, hit: &Hit<R>) -> Option<Normal<R>> {
     (seen.face.is_none() && !seen.in_shadow).then_some(hit.normal)
 }

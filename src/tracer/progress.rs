@@ -1,15 +1,15 @@
-//! How far a frame is.
+//! The progress of a frame.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// How far a tracer is with its frame, to be asked on any thread while it traces.
+/// The progress of a tracer's frame, which any thread may read while it is traced.
 #[derive(Clone, Debug, Default)]
 pub struct Progress(Arc<AtomicU32>);
 
 impl Progress {
-    /// How many rows of the frame are done.
+    /// The number of rows that are done.
     pub fn rows(&self) -> u32 {
         self.0.load(Relaxed)
     }

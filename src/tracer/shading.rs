@@ -39,8 +39,7 @@ impl<R: Real> Shading<R> {
         }
     }
 
-    /// k_a I_a: what a point in shadow shows of its colour, and all that a shadow on the surface
-    /// shows.
+    /// k_a I_a: the light of a point in shadow, and the colour of the surface in shadow.
     pub(super) fn ambient(&self) -> Vector<R> {
         self.ambient
     }
@@ -50,8 +49,7 @@ impl<R: Real> Shading<R> {
         self.to_light.vector.divided_by(self.to_light_length)
     }
 
-    /// For red, green and blue: what ambient light, n·l and (n·h)ⁿ are multiplied with in equation
-    /// 4-1.
+    /// The coefficients of 1, n·l and (n·h)ⁿ in equation 4-1, for red, green and blue.
     pub(super) fn coefficients(&self) -> [[R; 3]; 3] {
         let (a, d, s) = (self.ambient, self.diffuse, self.specular);
         [[a.x, d.x, s.x], [a.y, d.y, s.y], [a.z, d.z, s.z]]
@@ -75,7 +73,7 @@ impl<R: Real> Shading<R> {
         }
     }
 
-    /// The terms of equation 4-1 where a solid has this normal.
+    /// The terms of equation 4-1 at a point with this normal.
     pub(super) fn terms(&self, n: &Normal<R>) -> Result<Terms<R>, R::Doubt> {
         let (normal, length) = (n.vector, n.length);
         let none = Vector::exact(DVec3::ZERO);
@@ -85,8 +83,8 @@ impl<R: Real> Shading<R> {
         } else {
             none
         };
-        // 1 − n·h = |n − h|²/2 for unit vectors: small, and known to a small relative error, just
-        // where the highlight is bright.
+        // 1 − n·h = |n − h|²/2 for unit vectors: where the highlight is bright, it is small and has
+        // a small relative error.
         let one_minus = self
             .halfway
             .map(|halfway| (normal.divided_by(length) - halfway).squared_length() * R::exact(0.5));
@@ -102,7 +100,7 @@ impl<R: Real> Shading<R> {
         })
     }
 
-    /// L of equation 4-1 there.
+    /// L of equation 4-1 at a point with this normal.
     pub(super) fn lit(&self, normal: &Normal<R>) -> Result<Vector<R>, R::Doubt> {
         let terms = self.terms(normal)?;
         Ok(self.ambient + terms.diffuse + terms.specular)
@@ -117,7 +115,7 @@ pub(super) fn halfway<R: Real>(looking: &Direction<R>, to_light: &Direction<R>) 
     sum.divided_by(sum.length())
 }
 
-/// Equation 4-1 but for its ambient term, which is the same everywhere.
+/// The terms of equation 4-1 that depend on the normal, and what they are made of.
 pub(super) struct Terms<R> {
     /// n·l.
     pub(super) normal_light: R,

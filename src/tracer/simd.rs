@@ -10,12 +10,12 @@ use fearless_simd::Level;
 pub struct Simd(pub(super) Level);
 
 impl Simd {
-    /// The widest.
+    /// The widest set of this machine.
     pub fn best() -> Simd {
         Simd(Level::new())
     }
 
-    /// All that this machine has, the widest first and plain code last.
+    /// All sets of this machine, the widest first and none last.
     pub fn all() -> Vec<Simd> {
         let best = Level::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -31,7 +31,7 @@ impl Simd {
         vectors.chain([Level::fallback()]).map(Simd).collect()
     }
 
-    /// What it is called.
+    /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -39,8 +39,8 @@ impl<R: Real> Sphere<R> {
         let root = discriminant.sqrt();
         let d = line.direction;
         let depth = ((self.center - line.origin).dot(d.vector) - root) / d.squared_length;
-        // Across the line the normal is d × ((o − c) × d) / |d|², along it −√D d / |d|²: no
-        // difference of points far away.
+        // The normal is d × ((o − c) × d)/|d|² − √D d/|d|², its parts perpendicular and parallel to
+        // the line: no difference of points far away.
         let normal = (d.vector.cross(moment) - d.vector * root).divided_by(d.squared_length);
         Ok(Some(Hit {
             depth,
@@ -55,9 +55,9 @@ impl<R: Real> Sphere<R> {
         }))
     }
 
-    /// How the depth of this sphere's first hit compares with that of another one, where a line
-    /// meets both and their centres are known to lie abreast of it: then only the discriminants
-    /// differ, and no root is needed to see that these are the same.
+    /// How the depths of this sphere and another one compare, for a line that meets both; `None`
+    /// unless their centres lie abreast of the line. If they do, the depths compare as the
+    /// discriminants do, and no root is needed to see that they are equal.
     pub(super) fn compare_abreast(
         &self,
         other: &Sphere<R>,

@@ -6,7 +6,7 @@ use super::vector::Vector;
 use crate::number::{Bounded, Real};
 use crate::scene::{Scene, SurfaceCasters};
 
-/// The surface's pixels, as f64 with a bound knows where they lie on it.
+/// Finds the casters of the surface at a pixel, from the pixel's point in f64 with bounds.
 #[derive(Clone, Copy)]
 pub(super) struct CastersOnSurface<'f> {
     casters: &'f SurfaceCasters,
@@ -32,7 +32,7 @@ impl<'f> CastersOnSurface<'f> {
         })
     }
 
-    /// Those of a pixel that shows the surface; of others it says nothing.
+    /// The casters at a pixel that shows the surface. Meaningless for others.
     pub(super) fn at(&self, (column, row): (u32, u32)) -> &'f [u16] {
         let [x, y] = [column, row].map(|number| f64::from(number) - self.half);
         let depth = Bounded::exact(y) - self.height_in_pixels;

@@ -1,9 +1,9 @@
-//! Where rows go.
+//! The memory that rows are traced into.
 
 use super::decision::Decision;
 use super::scanline::RowHistory;
 
-/// Some rows, and where they go.
+/// The memory of some rows.
 pub(super) struct Target<'t> {
     /// N.
     pub(super) size: u32,
@@ -13,7 +13,7 @@ pub(super) struct Target<'t> {
 }
 
 impl<'t> Target<'t> {
-    /// Bands of so many rows.
+    /// Splits the rows into bands of `rows`.
     pub(super) fn split(self, rows: usize) -> impl Iterator<Item = Target<'t>> {
         let size = self.size;
         let width = size as usize;

@@ -1,7 +1,7 @@
 //! A line and a tetrahedron: equations 3-2 and 3-3 for a closed, watertight solid.
 //!
-//! A line meets a convex solid where it has entered every face that it enters before it leaves any
-//! that it leaves. Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To
+//! A line meets a convex solid if it enters all faces that it enters before it leaves any other.
+//! Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To
 //! compare two faces i and j, the quotients are not needed: f_i g_j − f_j g_i = −((n_i × n_j) ×
 //! d)·(o − a) for a vertex a of both, and n_i × n_j is the edge that they share, times six volumes.
 //! So every decision about a line is the sign of one number an edge, the *edge function*
@@ -82,8 +82,8 @@ impl<R> EdgeFunctions<R> {
 }
 
 impl<R: Real> Tetrahedron<R> {
-    /// `right_handed` (the edges 0→1, 0→2, 0→3 are), `supports` and `facing_light` are decided
-    /// where the scene is read.
+    /// Exact arithmetic has decided `supports`, `facing_light`, and whether the edges 0→1, 0→2, 0→3
+    /// are `right_handed`.
     pub(super) fn new(
         vertices: [Vector<R>; 4],
         right_handed: bool,
@@ -175,8 +175,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// Where the edge function of `EDGES[edge]` is not negative, for its faces i < j. Where lines
-    /// enter i and leave j that is where t_i ≤ t_j; where they enter both, where t_i ≥ t_j.
+    /// The half-space where the edge function of `EDGES[edge]`, with faces i < j, is not negative. If
+    /// lines enter i and leave j, there t_i ≤ t_j; if they enter both, there t_i ≥ t_j.
     fn side(&self, edge: usize, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
         HalfSpace {
             normal: functions.moments[edge],
@@ -186,8 +186,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// The half-spaces that lines of one direction which meet the solid lie in: they enter no face
-    /// after they have left one, and are outside of none that they run along.
+    /// Half-spaces that hold a line exactly if the line meets the solid: it leaves no face before it
+    /// enters another, and lies outside of no face that it is parallel to.
     pub(super) fn met<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
@@ -207,8 +207,8 @@ impl<R: Real> Tetrahedron<R> {
         beside.chain(pairs)
     }
 
-    /// The half-spaces that points lie in from which a ray meets the solid at some t > 0: every
-    /// face that it leaves lies ahead.
+    /// Half-spaces that hold a ray's origin exactly if the ray meets the solid at some t > 0: its line
+    /// meets the solid, and every face that it leaves lies ahead.
     pub(super) fn ahead<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
@@ -222,8 +222,8 @@ impl<R: Real> Tetrahedron<R> {
         all(self.met(functions).map(|half_space| half_space.holds(line)))
     }
 
-    /// Two faces that lines of one direction enter, the lower first, and where they enter the lower
-    /// one last.
+    /// All pairs of faces that lines enter, the lower number first, each with the half-space in which
+    /// lines enter the first one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
@@ -234,8 +234,8 @@ impl<R: Real> Tetrahedron<R> {
         })
     }
 
-    /// The face that a line enters last, and so the solid; of several at once, the lowest. Every
-    /// line enters one.
+    /// The face through which a line enters the solid: the last that it enters, and of several at
+    /// once, the lowest number. Every line enters one.
     fn entered_face(
         &self,
         functions: &EdgeFunctions<R>,

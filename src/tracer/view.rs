@@ -2,9 +2,9 @@
 //!
 //! # The mirror
 //!
-//! What a ray sees in the surface is what the same ray, going on straight, would see of the scene
-//! reflected in the surface's plane. So the mirror is a second view of the same kind, of reflected
-//! solids under a reflected light, and every formula serves both.
+//! A mirrored ray meets what the straight continuation of the eye ray would meet in the mirror image
+//! of the scene. So the mirror is a second view of the same kind, with reflected solids under a
+//! reflected light, and every formula serves both.
 
 use std::cmp::Ordering;
 
@@ -123,14 +123,14 @@ impl<'f> FrameSigns<'f> {
 
 /// All solids and the light, turned, scaled, and for the mirror reflected.
 pub(super) struct View<'f, R> {
-    /// Where each solid can be seen: spheres, then tetrahedra.
+    /// The extent of each solid: spheres, then tetrahedra.
     pub(super) extents: ExtentsOfSolids<'f>,
     pub(super) spheres: &'f [Sphere<R>],
     pub(super) tetrahedra: &'f [TetrahedronInView<R>],
     pub(super) shading: Shading<R>,
 }
 
-/// A tetrahedron, as rays from the eye and to the light meet it.
+/// A tetrahedron with its edge functions for eye rays and for rays to the light.
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
     pub(super) from_eye: EdgeFunctions<R>,
@@ -208,9 +208,8 @@ impl<'f, R: Real> View<'f, R> {
             .normal(face)
     }
 
-    /// The first solid along the eye ray of `pixel`, or along the rest of it that goes on `from` a
-    /// point of it at a parameter, and where it is hit; of solids hit at once, the earliest in the
-    /// scene's order.
+    /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from` on,
+    /// and the number of the solid; of solids hit at once, the first in the scene.
     pub(super) fn first_hit(
         &self,
         (column, row): (u32, u32),
@@ -252,8 +251,8 @@ impl<'f, R: Real> View<'f, R> {
         Ok(first)
     }
 
-    /// How the depths of two solids compare where their difference is in doubt: known of spheres
-    /// abreast of the ray.
+    /// How the depths of two solids compare if the sign of their difference is in doubt: certain for
+    /// spheres whose centres lie abreast of the ray.
     fn compare_abreast(
         &self,
         one: usize,
@@ -267,7 +266,7 @@ impl<'f, R: Real> View<'f, R> {
         }
     }
 
-    /// Where a ray meets a solid, if that takes part: anywhere on its line, or only `ahead`.
+    /// Where a ray meets a solid that takes part: anywhere on its line, or only `ahead`.
     pub(super) fn hit(
         &self,
         solid: usize,
@@ -346,7 +345,7 @@ impl<'f, R: Real> View<'f, R> {
             .map(|caster| self.is_ahead(usize::from(*caster), ray)))
     }
 
-    /// The ray toward the light from a point of a sphere or plane, outward.
+    /// The ray to the light from a point of the sphere or plane that it `leaves`.
     pub(super) fn ray_to_light(&self, origin: Vector<R>, leaves: Support) -> Line<R> {
         Line {
             origin,
