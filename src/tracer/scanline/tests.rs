@@ -120,8 +120,8 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     match visible {
         Visible::Only(only) => shown(only),
         Visible::First(number) => {
-            let test = tests.test(number);
-            let solids = test.solids.iter();
+            let (test, candidates) = tests.test(number);
+            let solids = candidates.iter();
             let solids: Vec<String> = solids
                 .map(|solid| {
                     format!(

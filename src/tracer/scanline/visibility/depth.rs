@@ -8,7 +8,9 @@ use crate::scene::Side;
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::prepare::depth::Rectangle;
 use crate::tracer::scanline::prepare::prepared::Prepared;
-use crate::tracer::scanline::visibility::visible::{DepthTest, DepthTests, Shown, Visible};
+use crate::tracer::scanline::visibility::visible::{
+    Candidate, DepthTest, DepthTests, Shown, Visible,
+};
 
 /// The parts of a span, each settled by the depth test, and memory that is kept from span to span.
 #[derive(Default)]
@@ -62,10 +64,10 @@ impl Settled {
             Visible::First(test) => {
                 let test = depth_tests.test(test);
                 let first = self.near.len();
-                let indices = 0..test.solids.len();
+                let indices = 0..test.1.len();
                 self.near
                     .extend(indices.map(|index| Near { index, lower: 0.0 }));
-                self.add_first(frame, (depth_tests, &test), first, y, columns);
+                self.add_first(frame, (depth_tests, test), first, y, columns);
                 self.near.truncate(first);
             }
         }
@@ -75,7 +77,7 @@ impl Settled {
     fn add_first(
         &mut self,
         frame: &Prepared<'_>,
-        tests: (&DepthTests, &DepthTest<'_>),
+        tests: (&DepthTests, (&DepthTest, &[Candidate])),
         first: usize,
         y: f64,
         columns: Columns,
@@ -83,8 +85,8 @@ impl Settled {
         let (depth_tests, test) = tests;
         let end = self.near.len();
         let before = match front(frame, test, &mut self.near[first..], y, columns) {
-            Front::Candidate(index) => return self.push(columns, test.solids[index].shown),
-            Front::Rest => return self.add(frame, depth_tests, test.rest, y, columns),
+            Front::Candidate(index) => return self.push(columns, test.1[index].shown),
+            Front::Rest => return self.add(frame, depth_tests, test.0.rest, y, columns),
             Front::Before(depth) => depth,
         };
         let Some(halves) = halves(columns) else {
@@ -113,7 +115,7 @@ impl Settled {
 /// What is in front in all these columns, among the solids `near`. Updates their lower bounds.
 fn front(
     frame: &Prepared<'_>,
-    test: &DepthTest<'_>,
+    (test, candidates): (&DepthTest, &[Candidate]),
     near: &mut [Near],
     y: f64,
     columns: Columns,
@@ -131,13 +133,13 @@ fn front(
     let mut candidate = (Front::Rest, rest);
     let mut others_begin = f64::INFINITY;
     for Near { index, lower: kept } in near {
-        let other = &test.solids[*index];
+        let other = &candidates[*index];
         let solid = view.solid(other.solid);
         let support = solid.depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
         // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
-            && let first = &test.solids[*first]
+            && let first = &candidates[*first]
             && support.is_some()
             && view.solid(first.solid).depth.support(first.front_face) == support
         {

@@ -1,5 +1,7 @@
 //! What gaps and spans show: the answer of `resolve`, as it is cached.
 
+use std::ops::Range;
+
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
@@ -80,23 +82,15 @@ pub(crate) struct Candidate {
 }
 
 /// A depth test among several solids.
-pub(crate) struct DepthTest<'p> {
+pub(crate) struct DepthTest {
     /// Whether the solids are seen in the mirror.
     pub(crate) mirrored: bool,
-    pub(crate) solids: &'p [Candidate],
+    /// The range of its candidates among those of all tests.
+    candidates: Range<usize>,
     /// Whether the surface may be in front of them.
     pub(crate) surface: bool,
     /// What is visible where none of them is in front.
     pub(crate) rest: Visible,
-}
-
-/// A depth test as it is kept: its candidates are a range of those of all tests.
-struct Stored {
-    mirrored: bool,
-    from: usize,
-    to: usize,
-    surface: bool,
-    rest: Visible,
 }
 
 /// Beyond so many tests all are forgotten, and those still needed are made anew.
@@ -105,14 +99,14 @@ const MANY: usize = 4096;
 /// The depth tests of all gaps.
 #[derive(Default)]
 pub(crate) struct DepthTests {
-    tests: Vec<Stored>,
-    solids: Vec<Candidate>,
+    tests: Vec<DepthTest>,
+    candidates: Vec<Candidate>,
 }
 
 impl DepthTests {
     pub(crate) fn clear(&mut self) {
         self.tests.clear();
-        self.solids.clear();
+        self.candidates.clear();
     }
 
     /// Whether all tests should be forgotten: most of so many are not needed any more.
@@ -124,35 +118,24 @@ impl DepthTests {
     pub(crate) fn defer(
         &mut self,
         mirrored: bool,
-        solids: impl Iterator<Item = Candidate>,
+        candidates: impl Iterator<Item = Candidate>,
         surface: bool,
         rest: Visible,
     ) -> Visible {
-        let from = self.solids.len();
-        self.solids.extend(solids);
-        self.tests.push(Stored {
+        let first = self.candidates.len();
+        self.candidates.extend(candidates);
+        self.tests.push(DepthTest {
             mirrored,
-            from,
-            to: self.solids.len(),
+            candidates: first..self.candidates.len(),
             surface,
             rest,
         });
         Visible::First(self.tests.len() as u32 - 1)
     }
 
-    pub(crate) fn test(&self, number: u32) -> DepthTest<'_> {
-        let Stored {
-            mirrored,
-            from,
-            to,
-            surface,
-            rest,
-        } = self.tests[number as usize];
-        DepthTest {
-            mirrored,
-            solids: &self.solids[from..to],
-            surface,
-            rest,
-        }
+    /// The test of this number, and its candidates.
+    pub(crate) fn test(&self, number: u32) -> (&DepthTest, &[Candidate]) {
+        let test = &self.tests[number as usize];
+        (test, &self.candidates[test.candidates.clone()])
     }
 }
