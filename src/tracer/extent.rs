@@ -14,6 +14,7 @@ use crate::scene::Scene;
 /// The pixels whose eye ray can meet a solid; all others certainly miss it.
 #[derive(Clone, Debug)]
 pub(super) struct Extent {
+    /// May reach beyond the picture, as `rows` may.
     columns: RangeInclusive<i64>,
     rows: RangeInclusive<i64>,
 }
@@ -38,9 +39,11 @@ pub(super) struct ExtentsOfSolids<'f> {
     half: f64,
     /// Pixels along a side of a tile.
     side: u32,
+    /// The number of tiles side by side.
     tiles_per_row: u32,
     /// For each tile, the index of its first solid in `solids`; then the length of `solids`.
     starts: &'f [u32],
+    /// The solids of each tile, the nearest first.
     solids: &'f [u16],
 }
 

@@ -22,7 +22,9 @@ use crate::scene::Scene;
 /// The rotation and the scale from the scene into view space.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<R> {
+    /// sin α.
     pub(super) sin: R,
+    /// cos α.
     pub(super) cos: R,
     /// 3N/2.
     pub(super) scale: R,

@@ -166,10 +166,12 @@ pub(super) struct Ladder<'f> {
     alpha: f64,
     size: u32,
     setup: FrameSetup<'f>,
+    /// The cheapest arithmetic that is tried.
     lowest: Rung,
     bounded: Picture<'f, Bounded>,
     /// Made in `late` when it is first needed.
     double_double: OnceLock<Picture<'f, DoubleDouble>>,
+    /// Memory for the parts that threads make.
     late: &'f Herd,
     /// Pictures that no thread is using. A thread that finds none makes one.
     arbitrary: Mutex<Vec<ArbitraryPicture<'f>>>,

@@ -9,6 +9,7 @@ use crate::scene::Scene;
 
 /// A slot for the samples of each decision, except those of spheres in the light.
 pub(super) struct Palette<'f> {
+    /// Without solids first, then those of each solid, then those of its mirror image.
     slots: &'f [OnceLock<[f32; 3]>],
     solids: usize,
 }

@@ -31,6 +31,7 @@ pub(super) struct Picture<'f, R> {
 
 /// The surface as pixels show it.
 pub(super) struct SeenSurface<'f, R> {
+    /// The geometry.
     pub(super) square: Surface<R>,
     /// The pixels that may show it.
     pub(super) extent: Extent,

@@ -16,9 +16,13 @@ pub(super) struct Shading<R> {
     to_light_length: R,
     /// h, of length 1; `None` where v + l = 0, and there is no highlight.
     halfway: Option<Vector<R>>,
+    /// k_a I_a.
     ambient: Vector<R>,
+    /// k_d I.
     diffuse: Vector<R>,
+    /// k_s I.
     specular: Vector<R>,
+    /// n.
     exponent: u32,
 }
 

@@ -12,6 +12,7 @@ use crate::scene::Support;
 pub(super) struct Sphere<R> {
     pub(super) center: Vector<R>,
     pub(super) radius: R,
+    /// Equal for spheres that are listed twice.
     pub(super) support: Support,
 }
 

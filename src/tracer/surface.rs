@@ -11,10 +11,14 @@ use crate::scene::Support;
 /// The square in view space: turned about y with the view, but always level.
 #[derive(Clone, Copy)]
 pub(super) struct Surface<R> {
+    /// The y of the plane.
     pub(super) height: R,
+    /// Half the length of a side.
     pub(super) half_width: R,
+    /// sin α, the direction of the sides.
     pub(super) sin: R,
     pub(super) cos: R,
+    /// The plane.
     pub(super) support: Support,
 }
 

@@ -35,6 +35,7 @@ pub(super) struct Tetrahedron<R> {
     /// Outward, of length `normal_lengths`.
     normals: [Vector<R>; 4],
     normal_lengths: [R; 4],
+    /// Whether the edges 0→1, 0→2, 0→3 are right-handed.
     right_handed: bool,
     /// The plane of each face.
     supports: [Support; 4],
@@ -44,8 +45,11 @@ pub(super) struct Tetrahedron<R> {
 
 /// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
 pub(super) struct HalfSpace<R> {
+    /// Inward, of any length.
     pub(super) normal: Vector<R>,
+    /// A point of the border.
     pub(super) at: Vector<R>,
+    /// Whether the border belongs to the half-space.
     pub(super) closed: bool,
     /// The plane of the border, if rays may leave it.
     pub(super) border: Option<Support>,

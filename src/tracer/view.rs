@@ -60,6 +60,7 @@ pub(super) type FaceSigns = [Ordering; 4];
 pub(super) struct ViewSigns<'f> {
     /// The signs of each tetrahedron.
     face_signs: &'f [FaceSigns],
+    /// How h is found.
     halfway: Halfway,
 }
 

@@ -76,6 +76,7 @@ struct Span {
 /// row to row; where two edges exchange places, only the gaps between them are resolved again.
 #[derive(Default)]
 pub(crate) struct ActiveEdges {
+    /// Empty, except while gaps are resolved.
     coverage: Coverage,
     /// The first row of the band.
     first: Option<u32>,
@@ -106,6 +107,7 @@ pub(crate) struct ActiveEdges {
     unresolved_gaps: Vec<usize>,
     /// The regions of which other edges than before cross the band.
     changed: Vec<usize>,
+    /// Whether each region is in `changed`.
     is_changed: Vec<bool>,
     /// The new edges of changed regions, by their columns in the first row of the band.
     arrivals: Vec<(u32, Edge)>,

@@ -8,10 +8,12 @@ use crate::tracer::scanline::grid::{ROWS, store_columns};
 /// A bit for each row of a band.
 const ALL: u64 = (1 << ROWS) - 1;
 
-/// The columns of a region in each row of a band: where they begin, and where they end. Outside of
-/// `possible` no pixel is in the region; all pixels of `certain`, which lies within, are.
+/// The columns of a region in each row of a band: where they begin, and where they end. `certain`
+/// lies within `possible`.
 pub(crate) struct BandColumns {
+    /// The columns outside of which the region has none.
     pub(crate) possible: [[u32; ROWS]; 2],
+    /// Columns that the region has.
     pub(crate) certain: [[u32; ROWS]; 2],
     /// A bit for each row: whether it has possible columns.
     pub(crate) filled: u64,

@@ -18,6 +18,7 @@ pub(crate) struct Ellipse {
     center: (f64, f64),
     /// m of each row.
     pub(crate) m: RowOffset,
+    /// The square of half the longest chord.
     pub(crate) squared_radius: f64,
     /// The largest |m| of a row that the ellipse may reach.
     limit: f64,

@@ -39,6 +39,7 @@ pub(crate) struct FaceDepth {
     row: f64,
     /// A bound on the error anywhere on the screen.
     error: f64,
+    /// The plane.
     support: Option<Support>,
 }
 

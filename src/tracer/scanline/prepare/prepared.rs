@@ -24,6 +24,7 @@ pub(crate) struct Prepared<'f> {
     pub(crate) paints: AllPaints<'f>,
     pub(crate) background: PaintNumber,
     pub(crate) surface: Option<PreparedSurface<'f>>,
+    /// The solids seen directly.
     direct: PreparedSolids<'f>,
     /// How many spheres are shaded.
     pub(crate) shaded_spheres: usize,

@@ -24,7 +24,9 @@ use crate::tracer::view::View;
 
 /// The shadow of the surface on the solids of a view.
 pub(crate) struct SurfaceShadow<'p> {
+    /// `None` in stages without the surface.
     surface: Option<&'p Surface<Bounded>>,
+    /// By the numbers of the solids in the scene.
     sides: &'p [Side],
     to_light: Vector<Bounded>,
     /// The sign of the rise of `to_light`. In the mirror it is reversed.

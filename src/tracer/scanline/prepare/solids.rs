@@ -23,6 +23,7 @@ impl<'f> PreparedSolids<'f> {
 
 /// A solid that may be seen.
 pub(crate) struct PreparedSolid<'f> {
+    /// The side of the surface that the solid is on.
     pub(crate) side: Side,
     pub(crate) depth: Depth<'f>,
     pub(crate) body: Body<'f>,
@@ -40,10 +41,13 @@ pub(crate) enum Body<'f> {
 
 /// A face of a tetrahedron that eye rays enter.
 pub(crate) struct FrontFace {
+    /// The paint in the light.
     pub(crate) lit: PaintNumber,
+    /// The paint in shadow.
     pub(crate) in_shadow: PaintNumber,
     /// Whether all of it is turned away from the light, and so in shadow.
     pub(crate) turned_away: bool,
+    /// The receiver of the shadows on the face.
     pub(crate) shadows: Receiver,
 }
 

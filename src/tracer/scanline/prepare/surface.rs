@@ -27,6 +27,7 @@ pub(crate) struct PreparedSurface<'f> {
     depth: LevelDepth,
     /// What it shows in the light where it mirrors nothing.
     pub(crate) paint: PaintNumber,
+    /// What it shows in shadow.
     pub(crate) in_shadow: PaintNumber,
     /// The receiver of its shadows.
     pub(crate) shadows: Receiver,

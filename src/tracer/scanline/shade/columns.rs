@@ -211,6 +211,7 @@ struct InRows<'b, S: Simd> {
     simd: S,
     sphere: &'b RowSphere,
     grid: Grid,
+    /// m of each row.
     m: S::f64s,
     /// R² − m².
     squared: S::f64s,

@@ -21,6 +21,7 @@ pub(crate) struct Hits<V> {
 pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
     simd: S,
     sphere: &'s RowSphere,
+    /// m of the row.
     m: f64,
     /// R² − m².
     squared: LaneVector<S, P>,

@@ -38,9 +38,9 @@ pub(crate) struct Lighting {
     pub(crate) axes: Axes,
     /// l, of length 1.
     pub(crate) to_light_unit: [Bounded; 3],
-    /// The vectors whose products with n are the components of n × l, and −n·l, with an l of any
-    /// length.
+    /// The vectors whose products with n are the components of n × l, with an l of any length.
     pub(crate) moment: [[Bounded; 3]; 3],
+    /// −l.
     pub(crate) before: [Bounded; 3],
     /// h, of length 1; `None` where there is no highlight.
     pub(crate) halfway: Option<[Bounded; 3]>,

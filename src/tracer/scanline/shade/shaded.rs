@@ -13,5 +13,6 @@ pub(crate) struct ShadedSphere<'f> {
     pub(crate) casters: &'f [Caster<'f>],
     /// The decision of its pixels in the light.
     pub(crate) lit: Decision,
+    /// The paint of its pixels in shadow.
     pub(crate) in_shadow: PaintNumber,
 }
