@@ -192,7 +192,7 @@ pub(crate) struct SurfaceCasters {
 }
 
 impl SurfaceCasters {
-    /// Of all solids but the hidden ones.
+    /// The casters among the solids that are not hidden.
     pub(super) fn new(
         spheres: &[Sphere],
         tetrahedra: &[Tetrahedron],

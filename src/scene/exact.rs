@@ -1,4 +1,4 @@
-//! What exact rational arithmetic decides about a scene, once, where it is read.
+//! Facts that exact rational arithmetic decides about a scene, once.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -17,18 +17,18 @@ pub(super) fn orientation(vertices: [DVec3; 4]) -> Ordering {
     sign(&dot(&minus(&b, &a), &cross(&minus(&c, &a), &minus(&d, &a))))
 }
 
-/// A sphere or a plane that points of solids or of the surface lie on: the same number where it is
-/// the same.
+/// The supporting plane of a face or of the surface, or the boundary of a sphere, by a number that is
+/// equal for equal planes and spheres.
 ///
-/// Two faces in one plane, a solid listed twice, a base that lies in the surface: such a tie covers
-/// an area of the picture, and at most angles no number of digits would ever show that it is one.
+/// Two faces in one plane, a solid listed twice, a base that lies in the surface: at most angles no
+/// number of digits would show that depths are equal there, and the tie covers an area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Support(u32);
 
-/// Everything about a scene that is decided here.
+/// The facts of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Facts {
-    /// Each sphere's own surface.
+    /// The boundary of each sphere.
     pub(crate) spheres: Vec<Support>,
     /// Whether the edges 0→1, 0→2, 0→3 of each tetrahedron are right-handed.
     pub(crate) right_handed: Vec<bool>,
@@ -36,12 +36,12 @@ pub(crate) struct Facts {
     pub(crate) faces: Vec<[Support; 4]>,
     /// The plane of the surface.
     pub(crate) surface: Option<Support>,
-    /// The sign of n·l for each face: a number that no turning of the scene changes.
+    /// The sign of n·l for each face. Turning the scene does not change it.
     pub(crate) facing_light: Vec<[Ordering; 4]>,
-    /// Where each solid is, spheres first, seen from the surface; `Above` where there is none.
+    /// The side of the surface that each solid is on, spheres first; `Above` without a surface.
     pub(crate) sides: Vec<Side>,
-    /// For each solid, spheres first, whether another one hides all of it, so that neither it nor
-    /// its shadow is seen where all solids take part.
+    /// For each solid, spheres first, whether it lies inside of another. Then neither the solid nor
+    /// its shadow is seen in stages where all solids take part.
     pub(crate) hidden: Vec<bool>,
     /// The solids that may stand between a point of another one and the light.
     pub(crate) casters: Casters,
@@ -49,19 +49,19 @@ pub(crate) struct Facts {
     pub(crate) surface_casters: Option<SurfaceCasters>,
 }
 
-/// Where a solid is, seen from the surface's plane, which belongs to both sides.
+/// The side of the surface's plane that a solid is on. The plane belongs to both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     /// No point of it is below.
     Above,
     /// No point of it is above.
     Below,
-    /// It goes through.
+    /// It has points below and above.
     Across,
 }
 
 impl Side {
-    /// Of a solid whose lowest and highest points compare so with the plane.
+    /// The side of a solid, from how its lowest and highest points compare with the plane.
     fn new(lowest: Ordering, highest: Ordering) -> Side {
         if lowest.is_ge() {
             Side::Above

@@ -20,8 +20,8 @@ enum AnySolid<'s> {
     Tetrahedron(&'s Tetrahedron),
 }
 
-/// For each solid, spheres first, whether it lies inside of another, and is not seen where both
-/// have a point in common.
+/// For each solid, spheres first, whether it lies inside of another, and is hidden also at points
+/// that both have in common.
 pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
     let hulls = hulls(spheres, tetrahedra);
     let solid = |number: usize| match spheres.get(number) {
@@ -34,7 +34,7 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
             let (small, large) = (&hulls[inner], &hulls[outer]);
             let slack = (small.center.abs() + large.center.abs()).element_sum() * (MARGIN - 1.0);
             let distance = small.center.distance(large.center);
-            // Of a tetrahedron the hull is larger than need be, and not all of it need be inside.
+            // A tetrahedron may lie inside although its hull does not.
             let may = match (solid(inner), solid(outer)) {
                 (AnySolid::Sphere(_), _) => {
                     distance + small.radius <= large.radius * MARGIN + slack
@@ -79,7 +79,7 @@ fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
                 AnySolid::Sphere(sphere) => number(sphere.radius),
                 AnySolid::Tetrahedron(_) => Relaxed::ZERO,
             };
-            // In f64 first: most are far from it.
+            // Most points are far outside, as f64 tells.
             let beyond = |point: &DVec3| {
                 (0..4).any(|k: usize| {
                     let [a, b, c] =

@@ -57,8 +57,7 @@ impl Plane {
         }
     }
 
-    /// Its coefficients with the first that is not 0 made 1: the same for every way to write the
-    /// same plane.
+    /// The coefficients, scaled so that the first that is not 0 is 1: equal for equal planes.
     pub(super) fn coefficients(self) -> [RBig; 4] {
         let [x, y, z] = self.normal.map(Relaxed::canonicalize);
         let all = [x, y, z, self.offset.canonicalize()];

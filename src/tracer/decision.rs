@@ -1,7 +1,6 @@
-//! What a pixel shows, apart from its colour.
+//! The decision of a pixel: what it shows, apart from its colour.
 
-/// What was decided for a pixel: the discrete part of the picture, which a kernel gets right or
-/// wrong.
+/// The decision of a pixel: the discrete part of the picture, right or wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Decision {
     /// Nothing is hit.

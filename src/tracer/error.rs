@@ -1,4 +1,4 @@
-//! What can be wrong with a tracer, or with what it is asked for.
+//! The errors of tracers and of requests to them.
 
 use std::io;
 

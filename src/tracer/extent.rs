@@ -117,7 +117,7 @@ impl<'f> ExtentsOfSolids<'f> {
         3.0 * (f64::from(row) - self.half)
     }
 
-    /// Where a solid can be seen.
+    /// The extent of a solid.
     pub(super) fn of(&self, solid: usize) -> &'f Extent {
         &self.all[solid]
     }
@@ -210,7 +210,7 @@ impl Extent {
     }
 }
 
-/// What of a range lies in a picture.
+/// The half-open part of a range that lies in a picture.
 fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
     let limit = |number: i64| number.clamp(0, size.into()) as u32;
     (limit(*range.start()), limit(range.end().saturating_add(1)))

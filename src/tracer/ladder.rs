@@ -50,7 +50,7 @@ pub(super) trait RowPixels: Pixels {
     fn color(&self, decision: Decision) -> [f32; 3];
 }
 
-/// What every arithmetic of a frame builds on.
+/// What all arithmetics of a frame share.
 struct FrameSetup<'f> {
     frame: Frame<Bounded>,
     signs: FrameSigns<'f>,

@@ -139,8 +139,8 @@ impl<R: Real> Surface<R> {
         }
     }
 
-    /// The same for a ray in the square's own plane: the slabs between opposite sides, cut out of t
-    /// > 0.
+    /// The same for a ray in the square's own plane: the slabs between opposite sides and t > 0 have a
+    /// parameter in common.
     fn is_ahead_in_plane(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         let origin = self.along_sides(ray.origin);
         let direction = self.along_sides(ray.direction.vector);

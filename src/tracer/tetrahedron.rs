@@ -169,7 +169,7 @@ impl<R: Real> Tetrahedron<R> {
         self.normals[face].dot(point - self.vertices[FACES[face][0]])
     }
 
-    /// Where f ≤ 0, or f < 0.
+    /// The half-space of a face, f ≤ 0 or f < 0.
     fn inside(&self, face: usize, closed: bool) -> HalfSpace<R> {
         HalfSpace {
             normal: -self.normals[face],

@@ -1,5 +1,5 @@
-//! The bounds on what the pixels of spheres are shaded with, held against double-doubles: no error
-//! is larger than its bound, and no bound is out of all proportion to the errors.
+//! The bounds of the shader of spheres, compared with double-doubles: no error is larger than its
+//! bound, and no bound is out of proportion to the errors.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -25,7 +25,7 @@ use crate::tracer::view::View;
 
 const SIZE: u32 = 400;
 
-/// The largest error found of some kind, as a part of its bound.
+/// The largest error of one kind, over its bound.
 #[derive(Default)]
 struct Largest {
     part: f64,
@@ -33,7 +33,7 @@ struct Largest {
 }
 
 impl Largest {
-    /// What f64 `computed` with this bound.
+    /// Notes a number that f64 `computed` with this bound.
     fn note(&mut self, truth: DoubleDouble, computed: f64, bound: f64) {
         let error = apart(truth, computed).abs();
         assert!(error <= bound, "{error:e} is more than {bound:e}");
@@ -43,7 +43,7 @@ impl Largest {
         }
     }
 
-    /// What f64 knows to lie between two numbers.
+    /// Notes a number that f64 encloses.
     fn note_between(&mut self, truth: DoubleDouble, lower: f64, upper: f64) {
         assert!(
             apart(truth, lower) >= 0.0 && apart(truth, upper) <= 0.0,
@@ -57,7 +57,8 @@ impl Largest {
         }
     }
 
-    /// A bound adds up what rarely meets, and is that of the worst pixel in a zone.
+    /// Expects errors of a thousandth of the bound: a bound is that of the worst pixel in a zone, and
+    /// adds up errors that rarely come together.
     fn expect(&self, what: &str) {
         assert!(self.count > 1000, "{what}: only {} tried", self.count);
         assert!(
@@ -75,17 +76,19 @@ fn apart(truth: DoubleDouble, computed: f64) -> f64 {
 #[derive(Default)]
 struct Found {
     light: Largest,
-    /// Channels without a highlight to speak of, and with one.
+    /// Channels without a visible highlight.
     dull: Largest,
+    /// Channels with one.
     highlight: Largest,
-    /// The forms that tell shadows.
+    /// The forms of shadows.
     forms: Largest,
     cache: ColumnCounts,
 }
 
-/// Pixels that are hit deep enough to be shaded.
+/// Counts of pixels.
 #[derive(Default)]
 struct ColumnCounts {
+    /// Pixels in the zones.
     all: usize,
     /// Pixels that the row certifies.
     shadeable: usize,
@@ -98,8 +101,8 @@ struct ColumnCounts {
 }
 
 impl ColumnCounts {
-    /// What a row says of a pixel, and n·l and n·h there; below `least` of that there is no
-    /// highlight to see.
+    /// Checks the columns of a row at a pixel with this n·l and n·h. There is no highlight to see
+    /// below an n·h of `least`.
     fn note(
         &mut self,
         columns: &SphereColumns,
@@ -116,7 +119,7 @@ impl ColumnCounts {
         self.shadeable += 1;
         if let Some((inside, inside_faces)) = columns.facing {
             self.settled += 1;
-            // As far as a double-double tells.
+            // A double-double does not tell smaller ones from 0.
             if light.abs() > 1e-25 {
                 let faces = is_in(inside) == inside_faces;
                 assert_eq!(faces, light > 0.0, "column {column}: n·l = {light:e}");
@@ -129,7 +132,7 @@ impl ColumnCounts {
         }
     }
 
-    /// Few pixels are left for others to ask.
+    /// Expects that nearly all pixels are shadeable and settled.
     fn expect(&self) {
         assert!(self.highlight > 1000 && self.settled > 1000);
         let missed = [self.all - self.shadeable, self.shadeable - self.settled];
@@ -146,7 +149,7 @@ impl ColumnCounts {
     }
 }
 
-/// A sphere as rows shade it, and what its pixels are in truth.
+/// A sphere as rows shade it, and in double-doubles.
 struct Case<'c> {
     picture: &'c Picture<'c, DoubleDouble>,
     view: &'c View<'c, DoubleDouble>,
@@ -154,9 +157,9 @@ struct Case<'c> {
     color: Vector<DoubleDouble>,
     row_sphere: RowSphere,
     grid: Grid,
-    /// Another sphere's centre, and the forms that tell whether that is between a pixel and the
-    /// light.
+    /// Another sphere's centre.
     other: Vector<DoubleDouble>,
+    /// The forms of the other sphere's shadow: its moment, and whether it is before a pixel.
     forms: [LinearForm; 4],
 }
 
@@ -267,7 +270,7 @@ fn check_view(
             forms: [x, y, z, before],
         };
         for row in (0..SIZE).step_by(3) {
-            // With multiplications and additions at once, if there are any, and without.
+            // With fused multiply-add, if the processor has it, and without.
             for level in [Level::new(), Level::baseline()] {
                 dispatch!(level, simd => case.check(simd, row, found));
             }

@@ -1,5 +1,5 @@
-//! What is visible in a gap: from the regions that cover its columns to one paint or one sphere, or
-//! to pixels that are decided one by one.
+//! Visibility: from the regions that cover a gap to what it shows, a paint, a sphere, or pixels that
+//! are decided one by one.
 
 pub(super) mod coverage;
 pub(super) mod depth;

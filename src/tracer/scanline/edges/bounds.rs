@@ -1,5 +1,5 @@
-//! The bounds on where rows cross edges and how deep solids lie, held against double-doubles: the
-//! truth is within each of them, and the largest error is no small part of it.
+//! The bounds on edges and depths, compared with double-doubles: each holds the truth, and the largest
+//! error is no small part of its bound.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -30,8 +30,8 @@ struct Shares {
     face_depth: f64,
 }
 
-/// The share of an enclosure's half width that the truth is away from its middle; none where the
-/// enclosure says nothing.
+/// The distance of the truth from the middle of an enclosure, over half its width; 0 where it is
+/// unbounded.
 fn share(truth: DoubleDouble, low: f64, high: f64) -> f64 {
     let apart = |end: f64| (truth - DoubleDouble::exact(end)).to_f64();
     assert!(

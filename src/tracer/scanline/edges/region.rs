@@ -250,7 +250,7 @@ mod tests {
             for first in (0..SIZE).step_by(ROWS) {
                 let mut band =
                     dispatch!(Level::baseline(), simd => region.cross(simd, first, grid));
-                // As they are crossed, and as they are after the columns in doubt were asked.
+                // Before and after the columns in doubt are decided.
                 for narrowed in [false, true] {
                     if narrowed {
                         region.narrow(&mut band, first, grid);

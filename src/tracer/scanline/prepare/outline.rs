@@ -1,4 +1,4 @@
-//! The outlines and depths of a view's solids, on which culling works.
+//! The outlines and depths of a view's solids, before culling.
 
 use bumpalo::Bump;
 

@@ -1,4 +1,4 @@
-//! What casts shadows on planes and on spheres: other solids, and the surface.
+//! Shadows on planes, as regions, and on spheres, as casters.
 
 use std::cell::LazyCell;
 use std::cmp::Ordering;

@@ -1,4 +1,4 @@
-//! What casts a shadow on a sphere.
+//! Casters on a sphere, as forms of its coordinates.
 
 use crate::number::Bounded;
 use crate::tracer::scanline::rounding::{INFLATION, U};

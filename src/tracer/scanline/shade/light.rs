@@ -49,7 +49,7 @@ pub(crate) struct Lighting {
     pub(crate) coefficients: [[Bounded; 3]; 3],
 }
 
-/// Where a highlight can be seen, and how it changes.
+/// The highlight of all spheres of a view.
 pub(crate) struct Highlight {
     /// n.
     pub(crate) exponent: u32,

@@ -118,7 +118,7 @@ mod tests {
                         assert_eq!(writes, *pixel != color, "round {round}, column {column}");
                         *pixel = color;
                     } else {
-                        // Of what was shaded nothing is remembered.
+                        // Shaded pixels are not remembered.
                         *pixel = (1, 0);
                     }
                 }
