@@ -1,8 +1,15 @@
 //! Promise: a picture with a known mistake earns the hint at it, and no picture earns another one.
 
+#[cfg(feature = "program")]
+use std::time::Duration;
+
 use firsthit::diagnosis::{Examination, Hint, TOLERANCE};
+#[cfg(feature = "program")]
+use firsthit::program::Program;
 use firsthit::{Image, Kernel, Scene, Stage};
 
+#[cfg(feature = "program")]
+use crate::helpers::compiled;
 use crate::helpers::{Random, hard_scene, hard_scenes, trace};
 
 fn hints(scene: &Scene, stage: Stage, alpha: f64, image: &Image) -> Vec<Hint> {
@@ -105,5 +112,43 @@ fn a_picture_that_is_made_otherwise_of_the_true_one_earns_its_hint() {
         (Hint::Degrees, turned(alpha.to_degrees())),
     ] {
         assert_eq!(hints(&scene, stage, alpha, &image), [hint]);
+    }
+}
+
+#[cfg(feature = "program")]
+#[test]
+fn a_tracer_with_a_mistake_earns_the_hint_at_it() {
+    for (mistake, hints_expected) in [
+        ("NONE", &[][..]),
+        ("UPSIDE_DOWN", &[Hint::UpsideDown]),
+        ("TRANSPOSED", &[Hint::Transposed]),
+        ("HALF_PIXEL_OFF", &[Hint::HalfPixelOff]),
+        ("GAMMA", &[Hint::Gamma]),
+        ("BGR", &[Hint::Bgr]),
+        ("BYTES", &[Hint::Bytes]),
+        ("DEGREES", &[Hint::Degrees]),
+        ("LIGHT_SIGN", &[Hint::LightSign]),
+        ("SHADOW_DIRECTION", &[Hint::ShadowDirection]),
+        ("SHADOW_BEHIND", &[Hint::ShadowBehind]),
+        ("FAR_ROOT", &[Hint::FarRoot]),
+        ("SHADOW_ACNE", &[Hint::ShadowAcne]),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let option = format!("-DMISTAKE={mistake}");
+        let Some(command) = compiled(&folder, "correct.c", &[&option]) else {
+            return;
+        };
+        let no_word = |line: &str| panic!("{line}");
+        let mut program = Program::start(&command, Duration::from_secs(60), no_word).unwrap();
+        let scene = Scene::builtin();
+        for stage in [Stage::Shadow, Stage::Reflection] {
+            for alpha in [0.3, 0.6, 2.1] {
+                let mut image = Image::new(250).unwrap();
+                program.ask(&scene, stage, alpha, &mut image).unwrap();
+                let earned = hints(&scene, stage, alpha, &image);
+                assert_eq!(earned, hints_expected, "{mistake}, {stage}, {alpha}");
+            }
+        }
+        program.finish().unwrap();
     }
 }

@@ -6,6 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Compiled with -DMISTAKE=BGR, say, it makes that mistake: what a tester of tracers is tested by. */
+enum {
+    NONE, UPSIDE_DOWN, TRANSPOSED, HALF_PIXEL_OFF, GAMMA, BGR, BYTES, DEGREES,
+    LIGHT_SIGN, SHADOW_DIRECTION, SHADOW_BEHIND, FAR_ROOT, SHADOW_ACNE
+};
+#ifndef MISTAKE
+#define MISTAKE NONE
+#endif
+
 typedef struct { double x, y, z; } Vector;
 typedef struct { Vector center; double radius; Vector color; } Sphere;
 typedef struct { Vector vertices[4], color; } Tetrahedron;
@@ -43,8 +52,9 @@ static bool meet_sphere(const Sphere *sphere, Ray ray,
     double discriminant = b * b - a * c;
     if (discriminant < 0)
         return false;
-    *enter = (-b - sqrt(discriminant)) / a;
-    *leave = (-b + sqrt(discriminant)) / a;
+    double root = MISTAKE == FAR_ROOT ? -sqrt(discriminant) : sqrt(discriminant);
+    *enter = (-b - root) / a;
+    *leave = (-b + root) / a;
     *normal = unit(subtract(at(ray, *enter), sphere->center));
     return true;
 }
@@ -107,11 +117,13 @@ static Vector to_light(void) { return unit(scale(-1, light_direction)); }
 
 /* Whether a solid but this one stands between a point and the light. */
 static bool is_hidden(Vector point, int but) {
-    Ray ray = {point, to_light()};
+    Ray ray = {point, MISTAKE == SHADOW_DIRECTION ? light_direction : to_light()};
     for (int solid = 0; solid < sphere_count + tetrahedron_count; solid++) {
         double enter, leave;
         Vector normal;
-        if (solid != but && meet(solid, ray, &enter, &leave, &normal) && leave > 0)
+        if (solid == but && MISTAKE != SHADOW_ACNE)
+            continue;
+        if (meet(solid, ray, &enter, &leave, &normal) && (leave > 0 || MISTAKE == SHADOW_BEHIND))
             return true;
     }
     return false;
@@ -120,6 +132,8 @@ static bool is_hidden(Vector point, int but) {
 /* Equation 4-1 where a ray hits a solid. */
 static Vector shade(Ray ray, Hit hit, bool shadows) {
     Vector point = at(ray, hit.t), l = to_light(), v = unit(scale(-1, ray.direction));
+    if (MISTAKE == LIGHT_SIGN)
+        l = scale(-1, l);
     Vector h = unit(add(v, l));
     double normal_light = dot(hit.normal, l), t;
     double highlight = pow(fmax(0, dot(hit.normal, h)), exponent);
@@ -148,7 +162,7 @@ static Vector surface_at(Ray ray, double t, int stage) {
     return surface_color;
 }
 
-static Vector pixel(int x, int y, int stage, double alpha, int size) {
+static Vector pixel(double x, double y, int stage, double alpha, int size) {
     if (stage == 1) {
         if (2 * x <= size)
             return 2 * y <= size ? (Vector){0.3, 0.3, 0} : (Vector){0, 0.3, 0.3};
@@ -239,8 +253,15 @@ int main(void) {
         read_scene(path);
         for (int y = 0; y < size; y++)
             for (int x = 0; x < size; x++) {
-                Vector color = pixel(x, y, stage, alpha, size);
+                Vector color = MISTAKE == TRANSPOSED ? pixel(y, x, stage, alpha, size)
+                    : MISTAKE == UPSIDE_DOWN ? pixel(x, size - 1 - y, stage, alpha, size)
+                    : MISTAKE == HALF_PIXEL_OFF ? pixel(x + 0.5, y + 0.5, stage, alpha, size)
+                    : pixel(x, y, stage, MISTAKE == DEGREES ? alpha * acos(-1) / 180 : alpha, size);
                 float rgb[3] = {color.x, color.y, color.z};
+                if (MISTAKE == BGR)
+                    rgb[0] = color.z, rgb[2] = color.x;
+                for (int i = 0; i < 3; i++)
+                    rgb[i] = MISTAKE == BYTES ? 255 * rgb[i] : MISTAKE == GAMMA ? powf(rgb[i], 1 / 2.2f) : rgb[i];
                 fwrite(rgb, sizeof rgb, 1, stdout);
             }
         fflush(stdout);
