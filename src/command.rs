@@ -16,6 +16,7 @@ use std::path::PathBuf;
 
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
+use firsthit::diagnosis::ExaminationError;
 use firsthit::difference::{HeatError, SizesDiffer};
 use firsthit::image::{ImageError, LoadError, SaveError};
 use firsthit::program::ProgramError;
@@ -43,7 +44,7 @@ enum Command {
     View(view::Arguments),
     /// Write pictures to files, without a window
     Capture(capture::Arguments),
-    /// Work one pixel through, term by term
+    /// Work one pixel through, term by term, and say what is wrong with another program's
     Explain(explain::Arguments),
     /// Measure speed against error: every kernel's times, and how far it is from the truth
     Report(report::Arguments),
@@ -66,6 +67,8 @@ pub(crate) enum Failure {
     Trace(#[from] TraceError),
     #[error(transparent)]
     Program(#[from] ProgramError),
+    #[error(transparent)]
+    Examination(#[from] ExaminationError),
     #[error(transparent)]
     Screen(#[from] ScreenError),
     #[error(transparent)]

@@ -4,7 +4,7 @@ use firsthit::image::display_byte;
 use firsthit::tracer::{Decision, TraceError};
 use firsthit::{Kernel, Scene, Stage, Tracer};
 
-use crate::helpers::{failed, printed, program, trace_with_decisions};
+use crate::helpers::{compiled, failed, printed, program, succeeded, trace_with_decisions};
 
 const SIZE: u32 = 48;
 
@@ -128,11 +128,51 @@ fn the_command_prints_it() {
         ("explain -1 0 --stage 6", 2),
         ("explain 1 --stage 6", 2),
         ("explain 1 1", 2),
+        ("explain 1 1 --stage 6 --tolerance 0.1", 2),
+        ("explain 1 1 --stage 6 --program true --tolerance -1", 2),
+        ("explain 1 1 --stage 6 --program true --kernel fast", 2),
+        ("explain 1 1 --stage 6 --program true", 1),
     ] {
         let refused = program(&folder, line).output().unwrap();
         failed(&refused, status, line);
         assert!(refused.stdout.is_empty(), "{line}");
     }
+}
+
+#[test]
+fn the_pixel_of_another_program_is_told_what_it_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(command) = compiled(&folder, "correct.c", &["-DMISTAKE=SHADOW_DIRECTION"]) else {
+        return;
+    };
+    let (scene, stage) = (Scene::builtin(), Stage::Shadow);
+    let (_, decisions) = trace_with_decisions(Kernel::Exact, &scene, stage, 0.3, 200);
+    let in_shadow = decisions
+        .iter()
+        .position(|&decision| decision == Decision::SurfaceInShadow);
+    let index = in_shadow.unwrap() as u32;
+    let (column, row) = (index % 200, index / 200);
+    let tracer = Tracer::new(Kernel::Exact, 1).unwrap();
+    let explanation = tracer
+        .explain(&scene, stage, 0.3, 200, (column, row))
+        .unwrap();
+    let line = format!("explain {column} {row} --stage 5 --alpha 0.3 --size 200");
+    let explain = |more: &[&str]| {
+        let mut explain = program(&folder, &line);
+        explain.args(["--program", &command]).args(more);
+        let text = succeeded(&explain.output().unwrap(), &line);
+        text.strip_prefix(&explanation).unwrap().to_owned()
+    };
+    assert_eq!(
+        explain(&[]),
+        "yours        0.5 0.5 0.5  (bytes 128 128 128)\n\
+         ours         0.3 0.3 0.3  (bytes 76 76 76)\n\
+         apart        6710886 6710886 6710886 f32 steps, 52 52 52 bytes\n\
+         verdict      shows the surface lit, where it is in shadow\n\
+         hint         shadows fall to the wrong side: shadow rays go toward the light\n"
+    );
+    let verdict = "verdict      is right but for rounding: within 0.25\n";
+    assert!(explain(&["--tolerance", "0.25"]).ends_with(verdict));
 }
 
 #[test]

@@ -177,3 +177,12 @@ pub(crate) fn kernel() -> impl TypedValueParser<Value = Kernel> {
             .ok_or("no kernel has this name")
     })
 }
+
+/// How far a sample may be from another one.
+pub(crate) fn tolerance(text: &str) -> Result<f32, &'static str> {
+    match text.parse::<f32>() {
+        Ok(tolerance) if tolerance >= 0.0 && tolerance.is_finite() => Ok(tolerance),
+        Ok(_) => Err("a number from 0 on is needed"),
+        Err(_) => Err("not a decimal number"),
+    }
+}

@@ -1,9 +1,10 @@
 //! `firsthit explain`: one pixel, worked through.
 
 use clap::Args;
-use firsthit::{Stage, Tracer};
+use firsthit::diagnosis::{Examination, TOLERANCE};
+use firsthit::{Image, Stage, Tracer};
 
-use super::arguments::{AngleArguments, PictureArguments, stage};
+use super::arguments::{AngleArguments, PictureArguments, ProgramArguments, stage, tolerance};
 use super::{Failure, print};
 
 #[derive(Args)]
@@ -19,18 +20,33 @@ pub(crate) struct Arguments {
     angle: AngleArguments,
     #[command(flatten)]
     picture: PictureArguments,
+    #[command(flatten)]
+    program: ProgramArguments,
+    /// How far the program's sample may be from the true one, or from that of another decision;
+    /// 1/255 if not given
+    #[arg(long, value_name = "ABS", requires = "program", value_parser = tolerance)]
+    tolerance: Option<f32>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let picture = &arguments.picture;
+    let (picture, stage) = (&arguments.picture, arguments.stage);
+    let (scene, alpha) = (picture.scene()?, arguments.angle.alpha());
+    let (column, row) = (arguments.column, arguments.row);
     let tracer = Tracer::new(picture.kernel.unwrap_or_default(), picture.threads())?;
-    let pixel = (arguments.column, arguments.row);
-    let alpha = arguments.angle.alpha();
-    print(&tracer.explain(
-        &picture.scene()?,
-        arguments.stage,
-        alpha,
-        picture.size,
-        pixel,
-    )?)
+    let mut text = tracer.explain(&scene, stage, alpha, picture.size, (column, row))?;
+    if let Some(mut program) = arguments.program.start()? {
+        let mut image = Image::new(picture.size)?;
+        program.ask(&scene, stage, alpha, &mut image)?;
+        program.finish()?;
+        let tolerance = arguments.tolerance.unwrap_or(TOLERANCE);
+        let threads = picture.threads();
+        let examination = Examination::new(&scene, stage, alpha, &image, tolerance, threads)?;
+        if let Some(pixel) = examination.pixel(column, row) {
+            text += &pixel.to_string();
+        }
+        for hint in examination.hints(&examination.diagnosis()?) {
+            text += &format!("{:<12} {hint}\n", "hint");
+        }
+    }
+    print(&text)
 }

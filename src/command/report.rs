@@ -13,7 +13,7 @@ use firsthit::report::{
 use firsthit::{Kernel, Render, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{ProgramsArguments, frames, kernel, read_scene, stage};
+use super::arguments::{ProgramsArguments, frames, kernel, read_scene, stage, tolerance};
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
@@ -80,14 +80,6 @@ fn stages(text: &str) -> Result<Stages, &'static str> {
     Ok(Stages(
         all.filter(|stage| (first..=last).contains(stage)).collect(),
     ))
-}
-
-fn tolerance(text: &str) -> Result<f32, &'static str> {
-    match text.parse::<f32>() {
-        Ok(tolerance) if tolerance >= 0.0 && tolerance.is_finite() => Ok(tolerance),
-        Ok(_) => Err("a number from 0 on is needed"),
-        Err(_) => Err("not a decimal number"),
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
