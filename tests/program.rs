@@ -179,7 +179,7 @@ fn its_frames_are_files_and_animations() {
 }
 
 /// What programs do wrong, in how many seconds, and what is said of it.
-const FAULTS: [(&str, &str, &str); 15] = [
+const FAULTS: [(&str, &str, &str); 16] = [
     (
         "read line; exit 3",
         "10",
@@ -223,6 +223,12 @@ const FAULTS: [(&str, &str, &str); 15] = [
     ),
     (
         "read line; echo tracing; head -c 768 /dev/zero; read line",
+        "10",
+        r#"wrote more to its standard output than the picture's 768 bytes: "tracing\n": let it write N × N × 3 floats of 4 bytes there, and messages to standard error"#,
+    ),
+    (
+        // The last bytes of the picture are no message, though they are a text.
+        "read line; echo tracing; yes fff? | tr -d '\\n' | head -c 768; read line",
         "10",
         r#"wrote more to its standard output than the picture's 768 bytes: "tracing\n": let it write N × N × 3 floats of 4 bytes there, and messages to standard error"#,
     ),
