@@ -42,15 +42,18 @@ pub(super) fn start(command: &mut Command) -> io::Result<Child> {
         Ok(child)
     }
     #[cfg(not(unix))]
-    command.spawn()
+    {
+        let _held = held();
+        command.spawn()
+    }
 }
 
 /// Ends a process that [`start`] has started, on Unix with its group; one that was ended so before
 /// is left alone.
 pub(super) fn end(child: &mut Child) {
-    let mut held = held();
     #[cfg(unix)]
     {
+        let mut held = held();
         let group = Pid::from_child(child);
         if held.groups.contains(&group) {
             held.groups.retain(|other| *other != group);
@@ -59,8 +62,11 @@ pub(super) fn end(child: &mut Child) {
         }
     }
     #[cfg(not(unix))]
-    let _ = child.kill();
-    drop(held);
+    {
+        let _held = held();
+        // An error says that it has ended.
+        let _ = child.kill();
+    }
 }
 
 /// Makes a folder for temporary files that only this user may read, and gives its absolute path.
