@@ -142,7 +142,7 @@ impl Tracer {
     /// # Errors
     /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Listing`] where the kernel
     /// is [`Kernel::Listing`] and the scene not of the document's shape; the image is left as
-    /// it was.
+    /// it was. [`TraceError::Cancelled`] where its [`Progress`] was told so.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -273,6 +273,8 @@ impl Tracer {
         let mut arena = std::mem::take(inner(&mut self.arena));
         arena.clear();
         let (kernel, frame) = (self.kernel, (scene, stage, alpha, image.size()));
+        // A frame that is not wanted any more may be cancelled while it is set up, too.
+        self.progress.begin();
         let work = TraceFrame {
             tracer: self,
             image,
@@ -281,6 +283,11 @@ impl Tracer {
         };
         let traced = with_frame(kernel, frame, &arena, work);
         *inner(&mut self.arena) = arena;
+        if self.progress.is_cancelled() {
+            // Nobody knows what the image shows.
+            self.frame = 0;
+            return Err(TraceError::Cancelled);
+        }
         traced
     }
 
@@ -292,7 +299,6 @@ impl Tracer {
         update: Update,
         trace: impl FnOnce(&mut Tracer, Target<'_>) -> InDoubt,
     ) {
-        self.progress.begin();
         let size = image.size();
         let mut history = std::mem::take(&mut self.history);
         let (remembered, samples) = match update {
@@ -346,6 +352,9 @@ impl Tracer {
             }
             let mut in_doubt = InDoubt::default();
             for (number, target) in (first..).zip(band.split(1)) {
+                if progress.is_cancelled() {
+                    break;
+                }
                 row.resize(target.samples.len(), 0.0);
                 let only = number..number + 1;
                 let of_row = rows.trace(only, row, target.decisions, None, scratch, &progress);
@@ -362,6 +371,9 @@ impl Tracer {
         self.each_band(target, |first, band, _| {
             let mut in_doubt = InDoubt::default();
             for (number, row) in (first..).zip(band.split(1)) {
+                if progress.is_cancelled() {
+                    break;
+                }
                 if let Some(history) = row.history.and_then(<[RowHistory]>::first_mut) {
                     history.is_written = true;
                 }

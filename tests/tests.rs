@@ -39,6 +39,7 @@ mod oracle;
 mod pictures;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod program;
+mod progress;
 mod properties;
 #[cfg(feature = "program")]
 mod readme;

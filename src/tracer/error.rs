@@ -33,6 +33,10 @@ pub enum TraceError {
         /// How many surfaces: 0 or 1.
         surfaces: usize,
     },
+    /// The frame was cancelled by [`Progress::cancel`](super::Progress::cancel): some rows of the
+    /// image show it, and some what was there before.
+    #[error("the frame was cancelled: trace it again")]
+    Cancelled,
     /// The worker threads could not be started.
     #[error("{threads} threads cannot be started: {source}; ask for fewer")]
     Threads {

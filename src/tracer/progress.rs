@@ -1,24 +1,42 @@
-//! The progress of a frame.
+//! How far a frame is, and whether anybody still wants it.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU32};
 
-/// The progress of a tracer's frame, which any thread may read while it is traced.
+/// How far a tracer is with its frame, to be asked on any thread while it traces.
 #[derive(Clone, Debug, Default)]
-pub struct Progress(Arc<AtomicU32>);
+pub struct Progress(Arc<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    rows: AtomicU32,
+    is_cancelled: AtomicBool,
+}
 
 impl Progress {
-    /// The number of rows that are done.
+    /// How many rows of the frame are done.
     pub fn rows(&self) -> u32 {
-        self.0.load(Relaxed)
+        self.0.rows.load(Relaxed)
+    }
+
+    /// Has the frame that is traced now end after the row that each thread is in, with
+    /// [`TraceError::Cancelled`](super::TraceError::Cancelled). The frames after it are traced as
+    /// ever.
+    pub fn cancel(&self) {
+        self.0.is_cancelled.store(true, Relaxed);
+    }
+
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled.load(Relaxed)
     }
 
     pub(super) fn begin(&self) {
-        self.0.store(0, Relaxed);
+        self.0.rows.store(0, Relaxed);
+        self.0.is_cancelled.store(false, Relaxed);
     }
 
     pub(crate) fn add(&self, rows: u32) {
-        self.0.fetch_add(rows, Relaxed);
+        self.0.rows.fetch_add(rows, Relaxed);
     }
 }

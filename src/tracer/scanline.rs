@@ -180,6 +180,9 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         };
         let mut traced = 0;
         for number in rows {
+            if progress.is_cancelled() {
+                break;
+            }
             row.number = number;
             row.y = self.frame.grid.coordinate(number);
             match &self.frame.quadrants {

@@ -393,9 +393,7 @@ impl App<'_> {
                 Reply::Traced(traced, samples) => {
                     // A stage that was left meanwhile is not shown any more; an angle is, or one
                     // that moves fast would never be seen.
-                    let (wanted, frame) = (self.wanted(), &traced.frame);
-                    let alpha = frame.alpha;
-                    if *frame == (Frame { alpha, ..wanted }) {
+                    if traced.frame.differs_in_angle(&self.wanted()) {
                         self.content.picture_came(traced, samples, Instant::now());
                         self.draw_in_time(event_loop);
                     }

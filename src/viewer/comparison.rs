@@ -1,17 +1,17 @@
 //! The error view: the shown picture against the truth, on a thread of its own.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use glam::UVec2;
 
 use crate::diagnosis::{Examination, Hint, TOLERANCE};
 use crate::difference::{error_color, steps};
-use crate::tracer::{Decision, Progress};
+use crate::tracer::{Decision, Progress, TraceError};
 use crate::{Image, Kernel, Scene, Stage, Tracer};
 
 use super::renderer::Renderer;
-use super::tracing::Frame;
+use super::tracing::{Frame, lock};
 use super::worker::Worker;
 use super::wrong::Wrong;
 use super::{Options, ViewerError};
@@ -115,6 +115,8 @@ impl ErrorView {
 pub(super) struct Comparing {
     worker: Worker<Task, Reply>,
     requested: Option<Frame>,
+    /// How far the picture is that is traced now, or was traced last.
+    progress: Arc<Mutex<Progress>>,
 }
 
 /// A frame, and its picture where a renderer made it that does not tell its decisions.
@@ -130,11 +132,14 @@ impl Comparing {
         wake: impl Fn() + Send + 'static,
     ) -> Result<Comparing, ViewerError> {
         let (size, threads) = (options.size, options.threads);
+        let progress = Arc::<Mutex<Progress>>::default();
+        let theirs = progress.clone();
         let worker = Worker::start("comparing", wake, move |Task(frame, image), reply| {
             let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
             let mut trace = |kernel| {
                 let mut image = Image::new(size)?;
                 let mut tracer = Tracer::new(kernel, threads)?;
+                *lock(&theirs) = tracer.progress();
                 reply(Reply::Begun(kernel, tracer.progress()));
                 let decisions = tracer.trace_with_decisions(scene, stage, alpha, &mut image)?;
                 Ok((image, decisions))
@@ -146,13 +151,17 @@ impl Comparing {
                     examine(&image, threads, (scene, stage, alpha))
                 }
             };
-            let answer = answer.map(|errors| errors.compared(frame.clone()));
-            reply(answer.map_or_else(Reply::Failed, Reply::Done));
+            match answer {
+                Ok(errors) => reply(Reply::Done(errors.compared(frame))),
+                Err(ViewerError::Trace(TraceError::Cancelled)) => {}
+                Err(error) => reply(Reply::Failed(error)),
+            }
         })
         .map_err(ViewerError::Thread)?;
         Ok(Comparing {
             worker,
             requested: None,
+            progress,
         })
     }
 
@@ -164,15 +173,24 @@ impl Comparing {
             Renderer::Given(_) if image.is_none() => return,
             Renderer::Given(_) => image.cloned(),
         };
-        if self.requested.as_ref() != Some(frame) {
+        let last = self.requested.as_ref();
+        if last != Some(frame) {
+            if last.is_some_and(|last| !last.differs_in_angle(frame)) {
+                self.cancel();
+            }
             self.requested = Some(frame.clone());
             self.worker.request(Task(frame.clone(), image));
         }
     }
 
-    /// Forgets the last request, so that the same frame may be requested again.
+    /// Forgets the last request, which nobody waits for any more.
     pub(super) fn forget(&mut self) {
         self.requested = None;
+        self.cancel();
+    }
+
+    fn cancel(&self) {
+        lock(&self.progress).cancel();
     }
 
     pub(super) fn reply(&self) -> Option<Reply> {

@@ -3,14 +3,14 @@
 
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
 use crate::diagnosis::{Examination, TOLERANCE};
 use crate::image::{Format, SaveError};
-use crate::tracer::{InDoubt, TraceError};
+use crate::tracer::{InDoubt, Progress, TraceError};
 use crate::{Image, Kernel, Render, RenderError, Scene, Stage, Tracer};
 
 use super::renderer::Renderer;
@@ -33,6 +33,18 @@ impl PartialEq for Frame {
         Arc::ptr_eq(&self.scene, &other.scene)
             && (self.stage, self.alpha) == (other.stage, other.alpha)
             && self.renderer == other.renderer
+    }
+}
+
+impl Frame {
+    /// Whether nothing but α tells one frame from another.
+    pub(super) fn differs_in_angle(&self, other: &Frame) -> bool {
+        let alpha = self.alpha;
+        *self
+            == Frame {
+                alpha,
+                ..other.clone()
+            }
     }
 }
 
@@ -75,6 +87,8 @@ pub(super) enum Reply {
 /// Why there is no picture.
 enum Failure {
     Refused(RenderError),
+    /// Nobody wants it any more.
+    Cancelled,
     Viewer(ViewerError),
 }
 
@@ -84,6 +98,7 @@ impl<E: Into<ViewerError>> From<E> for Failure {
             ViewerError::Trace(error @ TraceError::Listing { .. }) => {
                 Failure::Refused(error.into())
             }
+            ViewerError::Trace(TraceError::Cancelled) => Failure::Cancelled,
             error => Failure::Viewer(error),
         }
     }
@@ -92,7 +107,11 @@ impl<E: Into<ViewerError>> From<E> for Failure {
 /// What makes the pictures of a thread.
 enum Engine {
     /// The tracer, with the kernel that was asked for last.
-    Kernels { tracer: Tracer, threads: usize },
+    Kernels {
+        tracer: Tracer,
+        threads: usize,
+        progress: Arc<Mutex<Progress>>,
+    },
     /// A renderer that the viewer was given, and the edition of its files that it was made with.
     Given {
         renderer: Box<dyn Render + Send>,
@@ -109,8 +128,16 @@ impl Engine {
     fn render(&mut self, frame: &Frame, image: &mut Image) -> Result<Written, Failure> {
         let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
         match (self, &frame.renderer) {
-            (Engine::Kernels { tracer, threads }, renderer) => {
+            (
+                Engine::Kernels {
+                    tracer,
+                    threads,
+                    progress,
+                },
+                renderer,
+            ) => {
                 choose(tracer, kernel_of(renderer), *threads)?;
+                *lock(progress) = tracer.progress();
                 let rows = tracer.retrace(scene, stage, alpha, image)?;
                 Ok((rows, tracer.in_doubt()))
             }
@@ -127,6 +154,11 @@ impl Engine {
             }
         }
     }
+}
+
+pub(super) fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
+    // Nothing happens under the lock that could fail halfway.
+    progress.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The kernel that explains the pixels of a renderer: that of the truth, if it is none itself.
@@ -170,7 +202,11 @@ impl Pictures {
         let (kernel, threads) = (options.kernel.unwrap_or_default(), options.threads);
         let tracer = Tracer::new(kernel, threads)?;
         Ok(Pictures {
-            engine: Engine::Kernels { tracer, threads },
+            engine: Engine::Kernels {
+                progress: Arc::new(Mutex::new(tracer.progress())),
+                tracer,
+                threads,
+            },
             size: options.size,
             // Whether there is memory for it shows before the window opens.
             pool: vec![Arc::new(Image::new(options.size)?)],
@@ -231,7 +267,10 @@ impl Pictures {
         pixel: UVec2,
         image: Option<&Image>,
     ) -> Result<String, Failure> {
-        let Engine::Kernels { tracer, threads } = &mut self.engine else {
+        let Engine::Kernels {
+            tracer, threads, ..
+        } = &mut self.engine
+        else {
             return Ok(String::new());
         };
         choose(tracer, kernel_of(&frame.renderer), *threads)?;
@@ -246,23 +285,36 @@ impl Pictures {
         Ok(text)
     }
 
-    fn answer(&mut self, task: Task) -> Reply {
+    /// The picture of `frame`, whatever is cancelled meanwhile: another request may be meant.
+    fn picture_in_any_case(&mut self, frame: &Frame) -> Result<(Traced, Arc<Image>), Failure> {
+        loop {
+            match self.picture(frame) {
+                Err(Failure::Cancelled) => {}
+                picture => return picture,
+            }
+        }
+    }
+
+    /// The reply, if anybody still wants one.
+    fn answer(&mut self, task: Task) -> Option<Reply> {
         let (Task::Trace(frame) | Task::Save(frame, _) | Task::Explain(frame, ..)) = &task;
         let answer = match &task {
             Task::Trace(_) => self
                 .picture(frame)
                 .map(|(traced, image)| Reply::Traced(traced, image)),
             Task::Save(_, format) => self
-                .picture(frame)
+                .picture_in_any_case(frame)
                 .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, *format))),
             Task::Explain(_, pixel, image) => self
                 .explain(frame, *pixel, image.as_deref())
                 .map(|text| Reply::Explained(*pixel, text)),
         };
-        answer.unwrap_or_else(|failure| match failure {
-            Failure::Refused(reason) => Reply::Refused(frame.clone(), reason),
-            Failure::Viewer(error) => Reply::Failed(error),
-        })
+        match answer {
+            Ok(reply) => Some(reply),
+            Err(Failure::Refused(reason)) => Some(Reply::Refused(frame.clone(), reason)),
+            Err(Failure::Cancelled) => None,
+            Err(Failure::Viewer(error)) => Some(Reply::Failed(error)),
+        }
     }
 
     /// A picture that nobody else holds, taken out of the pool: the last one if possible, or else a
@@ -290,6 +342,8 @@ pub(super) struct Tracing {
     requested: Option<(Frame, Instant)>,
     /// That there is no picture of it is known.
     is_refused: bool,
+    /// How far the kernels' thread is.
+    progress: Option<Arc<Mutex<Progress>>>,
 }
 
 impl Tracing {
@@ -303,6 +357,10 @@ impl Tracing {
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Result<Tracing, ViewerError> {
         let size = of_kernels.size;
+        let progress = match &of_kernels.engine {
+            Engine::Kernels { progress, .. } => Some(progress.clone()),
+            Engine::Given { .. } => None,
+        };
         let mut all = vec![of_kernels];
         let given = renderers.into_iter().enumerate();
         all.extend(given.map(|(number, renderer)| Pictures::of_renderer(number, renderer, size)));
@@ -310,8 +368,9 @@ impl Tracing {
         let workers = all.into_iter().map(|mut pictures| {
             let first = pictures.number;
             Worker::start("tracing", wake.clone(), move |task, reply| {
-                let answer = pictures.answer(task);
-                reply((pictures.number - first, answer));
+                if let Some(answer) = pictures.answer(task) {
+                    reply((pictures.number - first, answer));
+                }
             })
         });
         let workers = workers.collect::<Result<_, _>>();
@@ -320,6 +379,7 @@ impl Tracing {
             made,
             requested: None,
             is_refused: false,
+            progress,
         })
     }
 
@@ -331,9 +391,16 @@ impl Tracing {
         }
     }
 
-    /// Requests the picture of `frame`, unless it was requested last.
+    /// Requests the picture of `frame`, unless it was requested last. A picture that a kernel still
+    /// traces is cancelled, unless only α has changed: one that moves fast would never be seen.
     pub(super) fn request(&mut self, frame: Frame) {
-        if self.requested.as_ref().map(|(last, _)| last) != Some(&frame) {
+        let last = self.requested.as_ref().map(|(last, _)| last);
+        if last != Some(&frame) {
+            if let (Some(last), Some(progress)) = (last, &self.progress)
+                && !last.differs_in_angle(&frame)
+            {
+                lock(progress).cancel();
+            }
             let task = Task::Trace(frame.clone());
             self.worker(&frame.renderer).request(task);
             self.requested = Some((frame, Instant::now()));
