@@ -77,7 +77,9 @@ fn advice(reason: &io::Error) -> &'static str {
     match reason.kind() {
         io::ErrorKind::NotFound => "give its path, as in ./homework, or its name in PATH",
         io::ErrorKind::PermissionDenied => "allow it to be run, as by chmod +x",
-        io::ErrorKind::WouldBlock | io::ErrorKind::OutOfMemory => "end some other programs first",
+        io::ErrorKind::WouldBlock | io::ErrorKind::OutOfMemory => {
+            "end other programs, or raise `ulimit -u` or `ulimit -v`"
+        }
         _ => "see what a shell says to it",
     }
 }

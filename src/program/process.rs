@@ -1,7 +1,7 @@
 //! A program's process and its three pipes.
 
 use std::io::{self, Write as _};
-use std::process::{ChildStdin, Stdio};
+use std::process::{ChildStdin, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -170,7 +170,7 @@ impl Process {
     }
 
     /// Ends it with its group, and waits for the last lines of its standard error; how it ended.
-    fn end(&mut self) -> std::process::ExitStatus {
+    fn end(&mut self) -> ExitStatus {
         let status = self.group.end();
         // A process that has left the group may still hold the pipe.
         let _ = self.diagnostics.recv_timeout(LOOK);
