@@ -195,36 +195,61 @@ fn test_shadings(frame: (&Scene, Stage, f64, u32), test: &mut Test<'_>) {
         solids: Toward::Either,
         ..right
     };
-    let surface = |surface, mistake| Mistake { surface, ..mistake };
-    let own = |mistake| Mistake {
-        own_shadow: true,
-        ..mistake
-    };
-    let far = |far| Mistake { far, ..right };
     let mistakes = [
-        // The surface, too, may be looked for the wrong way, and shadow rays may go with l.
         (Hint::LightSign, reversed),
-        (Hint::LightSign, surface(Toward::Away, reversed)),
+        // The way to the surface is taken with the wrong sign, too, or the way to everything.
         (
             Hint::LightSign,
-            surface(
-                Toward::Away,
-                Mistake {
-                    solids: Toward::Away,
-                    ..reversed
-                },
-            ),
+            Mistake {
+                surface: Toward::Away,
+                ..reversed
+            },
         ),
-        // A solid that is not left out stands behind each of its points.
+        (
+            Hint::LightSign,
+            Mistake {
+                solids: Toward::Away,
+                surface: Toward::Away,
+                ..reversed
+            },
+        ),
         (Hint::ShadowDirection, away),
-        (Hint::ShadowDirection, surface(Toward::Away, away)),
-        (Hint::ShadowDirection, own(away)),
+        (
+            Hint::ShadowDirection,
+            Mistake {
+                surface: Toward::Away,
+                ..away
+            },
+        ),
         (Hint::ShadowBehind, either),
-        (Hint::ShadowBehind, surface(Toward::Either, either)),
-        (Hint::ShadowBehind, surface(Toward::Either, right)),
-        (Hint::ShadowBehind, own(either)),
-        (Hint::FarRoot, far(Far::Spheres)),
-        (Hint::FarRoot, far(Far::All)),
+        (
+            Hint::ShadowBehind,
+            Mistake {
+                surface: Toward::Either,
+                ..either
+            },
+        ),
+        (
+            Hint::ShadowBehind,
+            Mistake {
+                own_shadow: true,
+                ..either
+            },
+        ),
+        (
+            Hint::FarRoot,
+            Mistake {
+                far: Far::Spheres,
+                ..right
+            },
+        ),
+        (
+            Hint::FarRoot,
+            Mistake {
+                far: Far::All,
+                ..right
+            },
+        ),
     ];
     Mistaken::with(frame, |mistaken| {
         for (hint, mistake) in mistakes {
