@@ -128,9 +128,14 @@ fn a_tracer_with_a_mistake_earns_the_hint_at_it() {
         ("BYTES", &[Hint::Bytes]),
         ("DEGREES", &[Hint::Degrees]),
         ("LIGHT_SIGN", &[Hint::LightSign]),
+        ("LIGHT_DIRECTION", &[Hint::LightSign]),
         ("SHADOW_DIRECTION", &[Hint::ShadowDirection]),
+        ("SHADOW_RAY", &[Hint::ShadowDirection]),
         ("SHADOW_BEHIND", &[Hint::ShadowBehind]),
+        ("SHADOW_LINE", &[Hint::ShadowBehind]),
+        ("SHADOW_OWN", &[Hint::ShadowBehind]),
         ("FAR_ROOT", &[Hint::FarRoot]),
+        ("FAR_ROOTS", &[Hint::FarRoot]),
         ("SHADOW_ACNE", &[Hint::ShadowAcne]),
     ] {
         let folder = tempfile::tempdir().unwrap();

@@ -6,11 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Compiled with -DMISTAKE=BGR, say, it makes that mistake: what a tester of tracers is tested by. */
+/* Compiled with -DMISTAKE=BGR, or another of these, it makes that mistake: the tests need some. */
 enum {
     NONE, UPSIDE_DOWN, TRANSPOSED, HALF_PIXEL_OFF, GAMMA, BGR, BYTES, DEGREES,
-    LIGHT_SIGN, SHADOW_DIRECTION, SHADOW_BEHIND, FAR_ROOT, SHADOW_ACNE
+    LIGHT_SIGN, LIGHT_DIRECTION, SHADOW_DIRECTION, SHADOW_RAY, SHADOW_BEHIND, SHADOW_LINE, SHADOW_OWN,
+    FAR_ROOT, FAR_ROOTS, SHADOW_ACNE
 };
+#define MAKES(one, other) (MISTAKE == one || MISTAKE == other)
 #ifndef MISTAKE
 #define MISTAKE NONE
 #endif
@@ -52,7 +54,7 @@ static bool meet_sphere(const Sphere *sphere, Ray ray,
     double discriminant = b * b - a * c;
     if (discriminant < 0)
         return false;
-    double root = MISTAKE == FAR_ROOT ? -sqrt(discriminant) : sqrt(discriminant);
+    double root = MAKES(FAR_ROOT, FAR_ROOTS) ? -sqrt(discriminant) : sqrt(discriminant);
     *enter = (-b - root) / a;
     *leave = (-b + root) / a;
     *normal = unit(subtract(at(ray, *enter), sphere->center));
@@ -88,6 +90,13 @@ static bool meet_tetrahedron(const Tetrahedron *solid, Ray ray,
 static bool meet(int solid, Ray ray, double *enter, double *leave, Vector *normal) {
     if (solid < sphere_count)
         return meet_sphere(&spheres[solid], ray, enter, leave, normal);
+    if (MISTAKE == FAR_ROOTS) {
+        Ray back = {ray.origin, scale(-1, ray.direction)};
+        bool met = meet_tetrahedron(&tetrahedra[solid - sphere_count], back, enter, leave, normal);
+        *enter = -*enter;
+        *leave = -*leave;
+        return met;
+    }
     return meet_tetrahedron(&tetrahedra[solid - sphere_count], ray, enter, leave, normal);
 }
 
@@ -113,17 +122,18 @@ static bool meet_surface(Ray ray, double *t) {
     return fabs(point.x) <= half_width && fabs(point.z) <= half_width;
 }
 
-static Vector to_light(void) { return unit(scale(-1, light_direction)); }
+static Vector to_light(void) { return unit(scale(MISTAKE == LIGHT_DIRECTION ? 1 : -1, light_direction)); }
 
 /* Whether a solid but this one stands between a point and the light. */
 static bool is_hidden(Vector point, int but) {
-    Ray ray = {point, MISTAKE == SHADOW_DIRECTION ? light_direction : to_light()};
+    Ray ray = {point, MAKES(SHADOW_DIRECTION, SHADOW_RAY) ? light_direction : to_light()};
     for (int solid = 0; solid < sphere_count + tetrahedron_count; solid++) {
         double enter, leave;
         Vector normal;
-        if (solid == but && MISTAKE != SHADOW_ACNE)
+        if (solid == but && !MAKES(SHADOW_ACNE, SHADOW_OWN))
             continue;
-        if (meet(solid, ray, &enter, &leave, &normal) && (leave > 0 || MISTAKE == SHADOW_BEHIND))
+        bool takes_all = MAKES(SHADOW_BEHIND, SHADOW_LINE) || MISTAKE == SHADOW_OWN;
+        if (meet(solid, ray, &enter, &leave, &normal) && (leave > 0 || takes_all))
             return true;
     }
     return false;
@@ -138,7 +148,8 @@ static Vector shade(Ray ray, Hit hit, bool shadows) {
     double normal_light = dot(hit.normal, l), t;
     double highlight = pow(fmax(0, dot(hit.normal, h)), exponent);
     Vector light = times(ambient, ambient_intensity);
-    bool under_surface = meet_surface((Ray){point, l}, &t) && t > 0;
+    Ray shadow = {point, MISTAKE == SHADOW_RAY ? light_direction : l};
+    bool under_surface = meet_surface(shadow, &t) && (t > 0 || MISTAKE == SHADOW_LINE);
     bool in_shadow = shadows
         && (normal_light <= 0 || under_surface || is_hidden(point, hit.solid));
     if (!in_shadow) {
