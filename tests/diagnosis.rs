@@ -118,6 +118,29 @@ fn a_pixel_that_shows_what_another_decision_gives_is_told_which() {
     assert_eq!(kinds.len(), 4, "{kinds:?}");
 }
 
+#[test]
+fn a_tetrahedron_in_shadow_is_seen_at_its_true_face() {
+    let (scene, stage) = (Scene::builtin(), Stage::Shadow);
+    let (truth, decisions) = trace_with_decisions(Kernel::Exact, &scene, stage, ALPHA, SIZE);
+    let mut faces = 0;
+    for (index, &decision) in decisions.iter().enumerate() {
+        let Decision::Solid(lit @ Seen { face: Some(_), .. }) = decision else {
+            continue;
+        };
+        faces |= 1 << lit.face.unwrap();
+        let mut image = truth.clone();
+        set(&mut image, index, [0.06, 0.135, 0.285]);
+        let shown = Decision::Solid(Seen {
+            in_shadow: true,
+            ..lit
+        });
+        let Diagnosis { verdicts, summary } = diagnosis(&scene, stage, ALPHA, &image);
+        assert_eq!(verdicts[index], Verdict::Shows(shown));
+        assert_eq!(summary.wrong_decisions.shadow, 1);
+    }
+    assert!(u32::count_ones(faces) > 1, "{faces:b}");
+}
+
 /// The solid of the built-in scene that has this number where the second sphere is missing.
 fn renumbered(decision: Decision) -> Decision {
     let next = |seen: Seen| Seen {
@@ -250,6 +273,22 @@ fn no_sample_is_too_wild() {
         let text = pixel(&scene, stage, &image, 0).to_string();
         assert_eq!(text.lines().count(), 4, "{text}");
     }
+}
+
+#[test]
+fn the_worst_pixel_is_the_first_of_those_farthest_from_the_truth() {
+    let (scene, stage) = (Scene::builtin(), Stage::Shadow);
+    let (mut image, _) = trace_with_decisions(Kernel::Exact, &scene, stage, ALPHA, SIZE);
+    let mut worst = |column: u32, sample: f32| {
+        set(&mut image, column as usize, [0.8, sample, 0.8]);
+        diagnosis(&scene, stage, ALPHA, &image).summary.worst
+    };
+    assert_eq!(worst(7, 0.7), Some((7, 0)));
+    assert_eq!(worst(9, 0.5), Some((9, 0)));
+    assert_eq!(worst(8, 0.75), Some((9, 0)));
+    assert_eq!(worst(11, 0.5), Some((9, 0)));
+    assert_eq!(worst(12, f32::NAN), Some((12, 0)));
+    assert_eq!(worst(13, f32::NEG_INFINITY), Some((12, 0)));
 }
 
 #[test]
