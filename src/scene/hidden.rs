@@ -49,9 +49,9 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
     hidden
 }
 
-/// Whether a solid lies inside of another: in its interior, or where its border belongs to it.
+/// Whether a solid lies inside of another: in its interior or, if `closed`, also on its border.
 fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
-    let is_in = |depth: &Relaxed| match sign(depth) {
+    let is_in = |distance: &Relaxed| match sign(distance) {
         Ordering::Greater => true,
         Ordering::Equal => closed,
         Ordering::Less => false,
@@ -99,9 +99,10 @@ fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
                 let plane = Plane::of_face(&vertices, k);
                 let length = dot(&plane.normal, &plane.normal);
                 points.iter().all(|point| {
-                    let depth = &plane.offset - dot(&plane.normal, &exact(*point));
-                    // depth/√length > radius.
-                    !sign(&depth).is_lt() && is_in(&(&depth * &depth - &length * &radius * &radius))
+                    let distance = &plane.offset - dot(&plane.normal, &exact(*point));
+                    // distance/√length > radius.
+                    !sign(&distance).is_lt()
+                        && is_in(&(&distance * &distance - &length * &radius * &radius))
                 })
             })
         }
