@@ -8,8 +8,8 @@
 //! - `line`, `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
 //! - `pixel`: what a pixel shows: the definition of the picture;
-//! - `ladder`: a pixel in f64 with bounds; in doubt, in double-doubles; still in doubt, in arbitrary
-//!   precision;
+//! - `ladder`: a pixel in f64 with bounds; in doubt, in double-doubles; still in doubt, in
+//!   arbitrary precision;
 //! - `scanline`: whole rows at once: nearly all pixels are made there, and few by the ladder;
 //! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
@@ -111,8 +111,8 @@ impl Tracer {
         })
     }
 
-    /// The same tracer, confined to these vector instructions. Kernels that trace pixel by pixel use
-    /// none.
+    /// The same tracer, confined to these vector instructions. Kernels that trace pixel by pixel
+    /// use none.
     pub fn with_simd(self, simd: Simd) -> Tracer {
         Tracer { simd, ..self }
     }
@@ -216,9 +216,9 @@ impl Tracer {
         Ok(decisions)
     }
 
-    /// One pixel, worked through for a person to read: its rays, all that they meet, the decision and
-    /// the arithmetic that settled it, each term of equation 4-1, the samples. All numbers come from
-    /// the code that traces.
+    /// One pixel, worked through for a person to read: its rays, all that they meet, the decision
+    /// and the arithmetic that settled it, each term of equation 4-1, the samples. All numbers come
+    /// from the code that traces.
     ///
     /// # Errors
     /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of
@@ -392,8 +392,8 @@ impl Tracer {
         })
     }
 
-    /// Traces bands of rows on all threads; a single thread traces all rows as one band. `trace` gets
-    /// the number of the band's first row.
+    /// Traces bands of rows on all threads; a single thread traces all rows as one band. `trace`
+    /// gets the number of the band's first row.
     fn each_band(
         &mut self,
         target: Target<'_>,

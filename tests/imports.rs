@@ -1,6 +1,6 @@
 //! Promise: the library can be read from one end to the other. No file imports another one that
-//! imports the first, in however many steps. A `pub use` is an import, too, unless it passes on a name
-//! of the module's own children: that is the table of contents of what follows.
+//! imports the first, in however many steps. A `pub use` is an import, too, unless it passes on a
+//! name of the module's own children: that is the table of contents of what follows.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,4 +1,5 @@
-//! Which solids can cast a shadow on which: most cannot, and turning the scene does not change that.
+//! Which solids can cast a shadow on which: most cannot, and turning the scene does not change
+//! that.
 
 use std::cmp::Ordering;
 
@@ -7,8 +8,8 @@ use glam::DVec3;
 use super::hull::{Hull, MARGIN, each_overlapping_pair, hulls};
 use super::{Sphere, Surface, Tetrahedron};
 
-/// The casters of each sphere and each face: the solids that may stand between a point of it and the
-/// light.
+/// The casters of each sphere and each face: the solids that may stand between a point of it and
+/// the light.
 ///
 /// Hidden solids are neither casters nor receivers: their shadows lie within the shadows of the
 /// solids that hide them, and no ray meets them first. Faces turned away from the light have no
@@ -109,9 +110,9 @@ struct PrismPlane {
 }
 
 impl PrismPlane {
-    /// The plane through `at` along two vectors, each of length 1 or the difference of two points at
-    /// most `magnitude` from the origin; `inner` lies on the inner side. `None` where f64 does not
-    /// tell which side that is.
+    /// The plane through `at` along two vectors, each of length 1 or the difference of two points
+    /// at most `magnitude` from the origin; `inner` lies on the inner side. `None` where f64 does
+    /// not tell which side that is.
     fn new(at: DVec3, [a, b]: [DVec3; 2], inner: DVec3, magnitude: f64) -> Option<Self> {
         let normal = a.cross(b);
         // A difference rounds by u of its points, which the product multiplies by the other factor;

@@ -17,8 +17,8 @@ pub(super) fn orientation(vertices: [DVec3; 4]) -> Ordering {
     sign(&dot(&minus(&b, &a), &cross(&minus(&c, &a), &minus(&d, &a))))
 }
 
-/// The supporting plane of a face or of the surface, or the boundary of a sphere, by a number that is
-/// equal for equal planes and spheres.
+/// The supporting plane of a face or of the surface, or the boundary of a sphere, by a number that
+/// is equal for equal planes and spheres.
 ///
 /// Two faces in one plane, a solid listed twice, a base that lies in the surface: at most angles no
 /// number of digits would show that depths are equal there, and the tie covers an area.

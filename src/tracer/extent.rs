@@ -122,8 +122,8 @@ impl<'f> ExtentsOfSolids<'f> {
         &self.all[solid]
     }
 
-    /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of the
-    /// solids of [`ExtentsOfSolids::at`] are in increasing order.
+    /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of
+    /// the solids of [`ExtentsOfSolids::at`] are in increasing order.
     pub(super) fn min_depth(&self, solid: usize, y: f64) -> f64 {
         let depth = (self.nearest[solid] + 3.0 * y) / 109.0;
         // 3 Y is a whole number of halves; the sum and the quotient round by u each.

@@ -178,8 +178,8 @@ pub(super) struct Ladder<'f> {
     colors: Palette<'f>,
 }
 
-/// The frame in arbitrary precision, for one thread at a time. Digits that one pixel needed are kept
-/// for the next.
+/// The frame in arbitrary precision, for one thread at a time. Digits that one pixel needed are
+/// kept for the next.
 struct ArbitraryPicture<'f> {
     session: Session,
     picture: Picture<'f, Expression>,
@@ -243,8 +243,8 @@ impl<'f> Ladder<'f> {
         (answer, Rung::Arbitrary)
     }
 
-    /// The samples of a pixel if it shows a sphere in the light, as `decision` says; `None` where it
-    /// cannot.
+    /// The samples of a pixel if it shows a sphere in the light, as `decision` says; `None` where
+    /// it cannot.
     pub(super) fn color_if(&self, decision: Decision, column: u32, row: u32) -> Option<[f32; 3]> {
         self.settle(&ColorIf(decision, column, row)).0
     }

@@ -155,12 +155,12 @@ impl<'a> Listing<'a> {
     /// Equation 4-1 times the solid's colour.
     ///
     /// Slip (Code 5-1): LigDir is the way the light travels, and shadows are traced against it, but
-    /// Equation 4-1 is handed it as l, which points toward the light. So solids are lit from
-    /// below, and their shadows are thrown from above.
+    /// Equation 4-1 is handed it as l, which points toward the light. So solids are lit from below,
+    /// and their shadows are thrown from above.
     ///
     /// Slip (Code 5-1): v points back along the ray that found the point, for a mirrored one toward
-    /// the surface. Here it is LookAt for those too, so a mirror image has its highlights where
-    /// the solid itself has them.
+    /// the surface. Here it is LookAt for those too, so a mirror image has its highlights where the
+    /// solid itself has them.
     ///
     /// Slip (Code 5-1): section V.1 lets a shadow fall on any point, but nothing asks for one here:
     /// only the surface receives shadows.

@@ -301,8 +301,8 @@ impl<'f, R: Real> Picture<'f, R> {
         })
     }
 
-    /// The parameter and the point at which an eye ray meets the surface's plane. The point's height
-    /// is not rounded.
+    /// The parameter and the point at which an eye ray meets the surface's plane. The point's
+    /// height is not rounded.
     pub(super) fn surface_point(
         &self,
         surface: &SeenSurface<'_, R>,

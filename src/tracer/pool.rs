@@ -135,8 +135,8 @@ impl Pool {
     }
 
     /// Calls `work` once for each band from 0 to before `bands`, with the number of the thread that
-    /// it is called on, from 0 to before [`Pool::threads`], and that of the band. Returns when
-    /// all bands are finished.
+    /// it is called on, from 0 to before [`Pool::threads`], and that of the band. Returns when all
+    /// bands are finished.
     ///
     /// # Panics
     /// Where a band does, as it does; with workers, after all other bands are finished.
@@ -147,9 +147,8 @@ impl Pool {
         let shared = &*self.shared;
         let job = Job { work: &work, bands };
         // No worker has a band now, because `&mut self` lets in one caller at a time, and the one
-        // before left when all bands were finished. From the first store into `unclaimed`
-        // on, until `wait` returns, `job` must stay where it is: nothing between
-        // may unwind.
+        // before left when all bands were finished. From the first store into `unclaimed` on, until
+        // `wait` returns, `job` must stay where it is: nothing between may unwind.
         shared
             .job
             .store(ptr::from_ref(&job).cast_mut().cast(), Relaxed);
@@ -161,8 +160,8 @@ impl Pool {
         shared.posted.0.fetch_add(1, SeqCst);
         for (asleep, worker) in shared.asleep.iter().zip(&self.workers).take(bands) {
             // In the one order of all `SeqCst`, either the worker's look at `posted`, which follows
-            // its store, comes after the addition above and finds the job; or this load
-            // comes after the worker's store and finds that it sleeps.
+            // its store, comes after the addition above and finds the job; or this load comes after
+            // the worker's store and finds that it sleeps.
             if asleep.load(SeqCst) {
                 worker.thread().unpark();
             }
@@ -189,15 +188,14 @@ impl Shared {
             let unclaimed = &self.unclaimed[owner].0;
             while let Ok(rest) = unclaimed.fetch_update(Acquire, Relaxed, claim) {
                 // SAFETY: this thread has claimed a band, and has not reported it finished.
-                // Whatever it believed to be going on before (it may have slept
-                // through any number of jobs between two instructions), the band is one of the job
-                // that the counter was last stored for, and the caller cannot leave
-                // `run`, where that job lies, before the band is reported
-                // below. The store was after the one into `job`, which claiming, a
-                // read-modify-write of the stored value or of one that follows from
-                // it, therefore makes visible; and there is no later store into `job` before the
-                // caller has left. The lifetime that the pointer has lost is longer than this turn
-                // of the loop.
+                // Whatever it believed to be going on before (it may have slept through any number
+                // of jobs between two instructions), the band is one of the job that the counter
+                // was last stored for, and the caller cannot leave `run`, where that job lies,
+                // before the band is reported below. The store was after the one into `job`, which
+                // claiming, a read-modify-write of the stored value or of one that follows from it,
+                // therefore makes visible; and there is no later store into `job` before the caller
+                // has left. The lifetime that the pointer has lost is longer than this turn of the
+                // loop.
                 let job = unsafe { &*self.job.load(Relaxed) };
                 let band = self.first(owner, job.bands) + rest - 1;
                 let work = AssertUnwindSafe(|| (job.work)(number, band));
@@ -221,8 +219,8 @@ impl Shared {
         }
         *lock(&self.caller) = Some(thread::current());
         // Whoever finishes the last band locks the same mutex afterwards: before this thread did,
-        // and then it is seen here that all are finished; or after, and then it finds this
-        // thread and wakes it.
+        // and then it is seen here that all are finished; or after, and then it finds this thread
+        // and wakes it.
         while !finished() {
             thread::park();
         }

@@ -22,21 +22,22 @@
 //! ```
 //!
 //! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that are not hidden
-//!   (`culling`), their colours (`bodies`) and shadows (`shadows`), and the surface (`surface`). The
-//!   result is plain data (`prepared`): regions and paints.
+//!   (`culling`), their colours (`bodies`) and shadows (`shadows`), and the surface (`surface`).
+//!   The result is plain data (`prepared`): regions and paints.
 //! - `edges/` crosses regions with rows. Eye rays are parallel, and so are rays to the light: every
 //!   silhouette, edge of a face, outline of a shadow on a plane or of a mirror image is a straight
 //!   line or an ellipse. An edge is a root of its equation, enclosed by a bound on its error. So a
 //!   region has *possible* columns and *certain* ones. For the columns between them the region is
-//!   evaluated, and where that leaves a doubt, the whole pixel is. A shadow on a sphere is no region:
-//!   `shade/` computes it.
+//!   evaluated, and where that leaves a doubt, the whole pixel is. A shadow on a sphere is no
+//!   region: `shade/` computes it.
 //! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
 //!   mostly nothing but the columns of the edges has changed.
 //! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
 //!   by a separating plane (`separation`) or by a depth test (`depth`).
-//! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with bounds
-//!   on its errors for the certified kernel and without for the others (`policy`). The columns of a
-//!   sphere that face the light, and those that may have a highlight, are found first (`columns`).
+//! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
+//!   bounds on its errors for the certified kernel and without for the others (`policy`). The
+//!   columns of a sphere that face the light, and those that may have a highlight, are found first
+//!   (`columns`).
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
@@ -48,8 +49,8 @@
 //!
 //! - in `scene`: a type and its refusals (`file`), a bounding ball (`hull`), a test whether it lies
 //!   inside of others (`hidden`), what is exactly decided about it (`exact`);
-//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`, `view`,
-//!   `extent`, `pixel`, `palette` and `explain` name every kind of solid;
+//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`,
+//!   `view`, `extent`, `pixel`, `palette` and `explain` name every kind of solid;
 //! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/bodies`,
 //!   `visibility/resolve`, and `shade/` where they vary), shadows on planes and on spheres
 //!   (`prepare/shadows`, `shade/caster`), and separating planes (`visibility/separation`).
@@ -153,9 +154,9 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch.shader.begin(self.frame.shaded_spheres);
     }
 
-    /// Traces neighbouring rows into their samples and, if given, decisions. Returns how many pixels
-    /// were in doubt. `scratch` must be prepared for the frame. `history`, if given, must tell what
-    /// `samples` show; then only differences are written.
+    /// Traces neighbouring rows into their samples and, if given, decisions. Returns how many
+    /// pixels were in doubt. `scratch` must be prepared for the frame. `history`, if given, must
+    /// tell what `samples` show; then only differences are written.
     pub(super) fn trace(
         &self,
         rows: Range<u32>,

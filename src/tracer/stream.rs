@@ -30,8 +30,8 @@ pub(super) fn copy(from: &[f32], to: &mut [f32]) {
     for (to, from) in to_lines.iter_mut().zip(from_lines) {
         for place in (0..LINE).step_by(VECTOR) {
             // SAFETY: both lines have 16 floats, of which these are four, and `to` begins at a
-            // multiple of 64 bytes: `head` floats on from where the row begins, and
-            // whole lines on from there.
+            // multiple of 64 bytes: `head` floats on from where the row begins, and whole lines on
+            // from there.
             unsafe {
                 let vector = _mm_loadu_ps(from.as_ptr().add(place));
                 _mm_stream_ps(to.as_mut_ptr().add(place), vector);

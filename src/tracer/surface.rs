@@ -32,9 +32,9 @@ impl<R: Real> Surface<R> {
     }
 
     /// Four linear functions of X and Y that are not negative in the square, each as a constant and
-    /// the coefficients of X and Y, for the points `origin` + X · `per_column` + Y · `per_row` of its
-    /// plane. `half` is half the length of a side. Points and `half` may be scaled by one positive
-    /// factor.
+    /// the coefficients of X and Y, for the points `origin` + X · `per_column` + Y · `per_row` of
+    /// its plane. `half` is half the length of a side. Points and `half` may be scaled by one
+    /// positive factor.
     pub(super) fn sides(
         &self,
         [origin, per_column, per_row]: [Vector<R>; 3],
@@ -139,8 +139,8 @@ impl<R: Real> Surface<R> {
         }
     }
 
-    /// The same for a ray in the square's own plane: the slabs between opposite sides and t > 0 have a
-    /// parameter in common.
+    /// The same for a ray in the square's own plane: the slabs between opposite sides and t > 0
+    /// have a parameter in common.
     fn is_ahead_in_plane(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         let origin = self.along_sides(ray.origin);
         let direction = self.along_sides(ray.direction.vector);

@@ -1,12 +1,12 @@
 //! A line and a tetrahedron: equations 3-2 and 3-3 for a closed, watertight solid.
 //!
 //! A line meets a convex solid if it enters all faces that it enters before it leaves any other.
-//! Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To
-//! compare two faces i and j, the quotients are not needed: f_i g_j − f_j g_i = −((n_i × n_j) ×
-//! d)·(o − a) for a vertex a of both, and n_i × n_j is the edge that they share, times six volumes.
-//! So every decision about a line is the sign of one number an edge, the *edge function*
-//! of equation 3-3: on which side of the edge the line passes. The two faces beside an edge read
-//! the same number, and a line cannot slip between them.
+//! Equation 3-2 gives t = −f/g for a face, with f = n·(o − a) and g = n·d. To compare two faces i
+//! and j, the quotients are not needed: f_i g_j − f_j g_i = −((n_i × n_j) × d)·(o − a) for a vertex
+//! a of both, and n_i × n_j is the edge that they share, times six volumes. So every decision about
+//! a line is the sign of one number an edge, the *edge function* of equation 3-3: on which side of
+//! the edge the line passes. The two faces beside an edge read the same number, and a line cannot
+//! slip between them.
 
 use std::cmp::Ordering;
 
@@ -179,8 +179,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// The half-space where the edge function of `EDGES[edge]`, with faces i < j, is not negative. If
-    /// lines enter i and leave j, there t_i ≤ t_j; if they enter both, there t_i ≥ t_j.
+    /// The half-space where the edge function of `EDGES[edge]`, with faces i < j, is not negative.
+    /// If lines enter i and leave j, there t_i ≤ t_j; if they enter both, there t_i ≥ t_j.
     fn side(&self, edge: usize, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
         HalfSpace {
             normal: functions.moments[edge],
@@ -190,8 +190,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    /// Half-spaces that hold a line exactly if the line meets the solid: it leaves no face before it
-    /// enters another, and lies outside of no face that it is parallel to.
+    /// Half-spaces that hold a line exactly if the line meets the solid: it leaves no face before
+    /// it enters another, and lies outside of no face that it is parallel to.
     pub(super) fn met<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
@@ -211,8 +211,8 @@ impl<R: Real> Tetrahedron<R> {
         beside.chain(pairs)
     }
 
-    /// Half-spaces that hold a ray's origin exactly if the ray meets the solid at some t > 0: its line
-    /// meets the solid, and every face that it leaves lies ahead.
+    /// Half-spaces that hold a ray's origin exactly if the ray meets the solid at some t > 0: its
+    /// line meets the solid, and every face that it leaves lies ahead.
     pub(super) fn ahead<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
@@ -226,8 +226,8 @@ impl<R: Real> Tetrahedron<R> {
         all(self.met(functions).map(|half_space| half_space.holds(line)))
     }
 
-    /// All pairs of faces that lines enter, the lower number first, each with the half-space in which
-    /// lines enter the first one last.
+    /// All pairs of faces that lines enter, the lower number first, each with the half-space in
+    /// which lines enter the first one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,

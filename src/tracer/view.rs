@@ -2,9 +2,9 @@
 //!
 //! # The mirror
 //!
-//! A mirrored ray meets what the straight continuation of the eye ray would meet in the mirror image
-//! of the scene. So the mirror is a second view of the same kind, with reflected solids under a
-//! reflected light, and every formula serves both.
+//! A mirrored ray meets what the straight continuation of the eye ray would meet in the mirror
+//! image of the scene. So the mirror is a second view of the same kind, with reflected solids under
+//! a reflected light, and every formula serves both.
 
 use std::cmp::Ordering;
 
@@ -209,8 +209,8 @@ impl<'f, R: Real> View<'f, R> {
             .normal(face)
     }
 
-    /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from` on,
-    /// and the number of the solid; of solids hit at once, the first in the scene.
+    /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from`
+    /// on, and the number of the solid; of solids hit at once, the first in the scene.
     pub(super) fn first_hit(
         &self,
         (column, row): (u32, u32),
@@ -252,8 +252,8 @@ impl<'f, R: Real> View<'f, R> {
         Ok(first)
     }
 
-    /// How the depths of two solids compare if the sign of their difference is in doubt: certain for
-    /// spheres whose centres lie abreast of the ray.
+    /// How the depths of two solids compare if the sign of their difference is in doubt: certain
+    /// for spheres whose centres lie abreast of the ray.
     fn compare_abreast(
         &self,
         one: usize,

@@ -38,8 +38,8 @@ pub(super) fn get_inter_point_sphere(pixel: DVec3, dir: DVec3, s: &Sphere) -> Op
         let t1 = (temp2 + temp1) / dir.dot(dir);
         let t2 = (temp2 - temp1) / dir.dot(dir); // equation 3-1
         // Slip (Code 3-1): the first hit is the first point along the ray. Here it is the point
-        // that is nearer to the pixel, on whichever side of it; a sphere behind the origin
-        // of a mirrored or shadow ray (t < 0) is met too.
+        // that is nearer to the pixel, on whichever side of it; a sphere behind the origin of a
+        // mirrored or shadow ray (t < 0) is met too.
         let t = if t1.abs() > t2.abs() { t2 } else { t1 };
         Some(pixel + t * dir) // e+td
     }
@@ -54,8 +54,7 @@ fn get_inter_point_triangle(
 ) -> DVec3 {
     let mut result = DVec3::ZERO;
     // Slip (Code 3-2): a line that runs along the face is divided by 0. The point becomes a NaN, of
-    // which no comparison holds, so the face is missed. And nothing asks for t > 0 here
-    // either.
+    // which no comparison holds, so the face is missed. And nothing asks for t > 0 here either.
     let t1 = (t.ver1 - pixel).dot(t.normal) / dir.dot(t.normal); // equation 3-2
     let ab = t.ver2 - t.ver1;
     let bc = t.ver3 - t.ver2;
@@ -84,8 +83,8 @@ pub(super) fn get_inter_point_tetrahedron(
     let mut result = DVec3::ZERO;
     let mut int_triangle_no = None;
     // Slip (Code 3-2): only the first triangle sets the distance that the others must fall below,
-    // so where it is missed they are compared with whatever stood there before. That is 0 here,
-    // and nothing is nearer: only lines through the first triangle, from either side, meet the
+    // so where it is missed they are compared with whatever stood there before. That is 0 here, and
+    // nothing is nearer: only lines through the first triangle, from either side, meet the
     // tetrahedron at all.
     let mut distance = 0.0;
     // Slip (Code 3-2): no line makes the flag false again for the next triangle. Once one is hit,

@@ -57,8 +57,8 @@ impl Largest {
         }
     }
 
-    /// Expects errors of a thousandth of the bound: a bound is that of the worst pixel in a zone, and
-    /// adds up errors that rarely come together.
+    /// Expects errors of a thousandth of the bound: a bound is that of the worst pixel in a zone,
+    /// and adds up errors that rarely come together.
     fn expect(&self, what: &str) {
         assert!(self.count > 1000, "{what}: only {} tried", self.count);
         assert!(

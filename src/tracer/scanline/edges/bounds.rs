@@ -1,5 +1,5 @@
-//! The bounds on edges and depths, compared with double-doubles: each holds the truth, and the largest
-//! error is no small part of its bound.
+//! The bounds on edges and depths, compared with double-doubles: each holds the truth, and the
+//! largest error is no small part of its bound.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 

@@ -124,8 +124,8 @@ impl Ellipse {
         let m_error =
             (slope.value().abs() * (shift + U * away) + slope.error() * (away + shift)) * INFLATION;
         // A row with a computed |m| above R plus its error misses the ellipse: near the zero by the
-        // bound on the error, and farther away because the slope is right to a quarter. If the slope
-        // is not, every row is in doubt.
+        // bound on the error, and farther away because the slope is right to a quarter. If the
+        // slope is not, every row is in doubt.
         let is_steep = slope.error() < slope.value().abs() / 4.0;
         let limit = if is_steep {
             (radius + m_error) * INFLATION

@@ -68,10 +68,10 @@ impl HalfPlane {
         let carried = constant.error() + (column.error() + row.error()) * max;
         let magnitude = constant.value().abs() + row.value().abs() * max;
         let magnitude_of_x = column.value().abs() * max;
-        // In columns the root is N/2 − (constant + row · Y)/(3 · column), and moves by the same part
-        // of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_row` by 2u more,
-        // the product with Y and the sum with it by u each: less than 8u of the terms' magnitudes,
-        // and of N/2 and the root, which is below 3N where it matters.
+        // In columns the root is N/2 − (constant + row · Y)/(3 · column), and moves by the same
+        // part of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_row` by 2u
+        // more, the product with Y and the sum with it by u each: less than 8u of the terms'
+        // magnitudes, and of N/2 and the root, which is below 3N where it matters.
         let inverse = 1.0 / (3.0 * column.value());
         let root = Root {
             at: grid.half - constant.value() * inverse,

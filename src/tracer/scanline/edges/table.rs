@@ -59,7 +59,8 @@ impl EdgeTable<'_> {
         self.rows.len()
     }
 
-    /// A bit for each of 64 regions: whether it may have pixels in the band of rows from `first` on.
+    /// A bit for each of 64 regions: whether it may have pixels in the band of rows from `first`
+    /// on.
     #[inline(always)]
     pub(crate) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
         let [from, to] = &self.rows[word];

@@ -28,8 +28,8 @@ use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::view::View;
 
-/// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of the
-/// scene, or the one in the mirror.
+/// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
+/// the scene, or the one in the mirror.
 pub(crate) fn with_bodies<'f>(
     picture: &Picture<'_, Bounded>,
     view: &View<'_, Bounded>,

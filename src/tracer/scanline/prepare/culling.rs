@@ -1,9 +1,9 @@
 //! Hidden-surface culling: in which rows a solid, a shadow or a mirror image can be seen at all.
 //!
 //! The screen is cut into tiles. If the outline of a solid covers a tile, the solid hides there
-//! whatever lies behind the farthest point at which eye rays enter it. A region that is hidden in all
-//! its tiles is left out. Culling decides about no pixel: it may miss what is hidden, but never hides
-//! what is seen.
+//! whatever lies behind the farthest point at which eye rays enter it. A region that is hidden in
+//! all its tiles is left out. Culling decides about no pixel: it may miss what is hidden, but never
+//! hides what is seen.
 
 use bumpalo::Bump;
 use fearless_simd::{Level, Simd, dispatch};

@@ -33,8 +33,8 @@ pub(crate) struct Prepared<'f> {
 }
 
 impl<'f> Prepared<'f> {
-    /// `color` tells the colour of a decision. Frames with a mean of `cull_from` solids behind a pixel
-    /// are culled.
+    /// `color` tells the colour of a decision. Frames with a mean of `cull_from` solids behind a
+    /// pixel are culled.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],

@@ -104,8 +104,8 @@ impl<'p> SurfaceShadow<'p> {
     }
 }
 
-/// The shadows of `casters` on a plane, each as a region: the pixels whose points are in it. A caster
-/// for which `is_ahead` is true lies ahead of all rays from the plane to the light.
+/// The shadows of `casters` on a plane, each as a region: the pixels whose points are in it. A
+/// caster for which `is_ahead` is true lies ahead of all rays from the plane to the light.
 pub(crate) fn shadows_on<'f>(
     plane: &PixelPlane,
     view: &View<'_, Bounded>,

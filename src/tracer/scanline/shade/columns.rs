@@ -1,9 +1,9 @@
 //! The columns of a sphere in a band of rows: those that f64 can shade, those that face the light,
 //! and those that may have a highlight.
 //!
-//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave if its factor of s
-//! is not negative; if the factor is not positive, the form's negative is concave. Three properties
-//! of a concave function f are used, for columns i < j:
+//! Along a row s = √(R² − m² − q²) is concave in q. So a [`LinearForm`] is concave if its factor of
+//! s is not negative; if the factor is not positive, the form's negative is concave. Three
+//! properties of a concave function f are used, for columns i < j:
 //!
 //! - If f(i) > 0 and f(j) > 0, then f > 0 between them.
 //! - If f(i) < 0 and f(j) > 0, then f < 0 in all columns to the left of i.
@@ -249,8 +249,8 @@ impl<S: Simd> InRows<'_, S> {
         let from = (in_columns::<S>(self.grid, middle - half) + NUDGE).ceil();
         let to = (in_columns::<S>(self.grid, middle + half) - NUDGE).floor() + 1.0;
         let (from, to) = (from.max(zero).min(size), to.max(zero).min(size));
-        // s² falls from the middle to both ends, also as f64 computes it: so what holds at both ends
-        // holds between them.
+        // s² falls from the middle to both ends, also as f64 computes it: so what holds at both
+        // ends holds between them.
         let (a, b) = (self.q(from), self.q(to - 1.0));
         let is_inside =
             (self.squared - a * a).simd_ge(min_square) & (self.squared - b * b).simd_ge(min_square);
@@ -266,8 +266,8 @@ impl<S: Simd> InRows<'_, S> {
         (self.m * form.m + form.constant + q * form.q + s * form.s - level) * sign
     }
 
-    /// The columns among `shadeable` in which a concave form is above `level`, or a convex one below;
-    /// and the rows for which that is certain of these and of all other columns.
+    /// The columns among `shadeable` in which a concave form is above `level`, or a convex one
+    /// below; and the rows for which that is certain of these and of all other columns.
     #[inline(always)]
     fn arc(
         &self,
@@ -311,8 +311,8 @@ impl<S: Simd> InRows<'_, S> {
         let top = (self.squared.max(zero) * inverse).sqrt() * a + self.sphere.center_x;
         let top = in_columns::<S>(self.grid, top).floor();
         let top = top.min(last - one).max(first);
-        // The columns beside each end of the guess, on either side of it. If the guess is empty, the
-        // four columns around the top.
+        // The columns beside each end of the guess, on either side of it. If the guess is empty,
+        // the four columns around the top.
         let columns = [
             is_none.select(top - one, from - one),
             is_none.select(top, from),

@@ -125,8 +125,8 @@ impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
         ]
     }
 
-    /// Samples of pixels in the light, from X = `x` on: ambient + diffuse · max(0, n·l) +
-    /// specular · (n·h)ⁿ. `light` is their n·l; `bright` has a bit for each that may have a highlight.
+    /// Samples of pixels in the light, from X = `x` on: ambient + diffuse · max(0, n·l) + specular
+    /// · (n·h)ⁿ. `light` is their n·l; `bright` has a bit for each that may have a highlight.
     #[inline(always)]
     pub(crate) fn lit(
         &self,

@@ -1,4 +1,5 @@
-//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: the same for all spheres.
+//! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: the same for all
+//! spheres.
 
 use crate::number::{Bounded, Real};
 use crate::tracer::scanline::rounding::INFLATION;

@@ -2,8 +2,8 @@
 //! without.
 //!
 //! f32 and f64 round after every operation, so that their pictures are the same bytes on every
-//! machine. Certified f64 uses fused multiply-add if the processor has it, which rounds once instead
-//! of twice. The errors stay within the same bounds, and certified samples are the same.
+//! machine. Certified f64 uses fused multiply-add if the processor has it, which rounds once
+//! instead of twice. The errors stay within the same bounds, and certified samples are the same.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -70,8 +70,8 @@ pub(crate) trait Policy<S: Simd> {
         factor
     }
 
-    /// The highlights, where `bright` has a bit for each pixel that may have one. Others are at most
-    /// 2⁻⁵⁹: the bounds on samples allow for that, and without bounds they are made 0.
+    /// The highlights, where `bright` has a bit for each pixel that may have one. Others are at
+    /// most 2⁻⁵⁹: the bounds on samples allow for that, and without bounds they are made 0.
     #[inline(always)]
     fn where_bright(_: S, highlight: LaneVector<S, Self>, _: u64) -> LaneVector<S, Self> {
         highlight

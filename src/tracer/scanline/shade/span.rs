@@ -1,5 +1,5 @@
-//! A span that shows a sphere: columns in shadow are filled, and all others are shaded or decided one
-//! by one.
+//! A span that shows a sphere: columns in shadow are filled, and all others are shaded or decided
+//! one by one.
 
 use fearless_simd::dispatch;
 

@@ -19,9 +19,9 @@ use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
-/// The zones of a sphere, from the middle of its outline to the rim: s ≥ R/8, s ≥ R/128, and
-/// s ≥ R/16384. A root multiplies errors by 1/s, so each zone has bounds of its own; what lies
-/// beyond the last zone is left in doubt.
+/// The zones of a sphere, from the middle of its outline to the rim: s ≥ R/8, s ≥ R/128, and s ≥
+/// R/16384. A root multiplies errors by 1/s, so each zone has bounds of its own; what lies beyond
+/// the last zone is left in doubt.
 pub(crate) const ZONES: usize = 3;
 
 /// R over the smallest s of each zone.

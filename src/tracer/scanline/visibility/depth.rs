@@ -1,8 +1,8 @@
 //! The depth test: which of several solids is nearest where no plane keeps them apart.
 //!
 //! The test bounds the depth of each solid over an interval of columns. If the bounds overlap, the
-//! interval is halved, down to single pixels, which are then decided by themselves. A half is tested
-//! only against the solids that can be in front there.
+//! interval is halved, down to single pixels, which are then decided by themselves. A half is
+//! tested only against the solids that can be in front there.
 
 use crate::scene::Side;
 use crate::tracer::scanline::grid::Columns;

@@ -8,8 +8,7 @@ use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
 
-/// What a gap with this coverage shows. If rows have to decide, a test is added
-/// to `depth_tests`.
+/// What a gap with this coverage shows. If rows have to decide, a test is added to `depth_tests`.
 pub(crate) fn visible(
     frame: &Prepared<'_>,
     coverage: &Coverage,

@@ -1,8 +1,8 @@
 //! The order of solids that a plane separates: which is in front wherever a ray meets both.
 //!
 //! All eye rays have one direction, so they cross a plane that separates two solids from the same
-//! side. Every ray that meets both meets the solid on that side first. This needs no depth, and holds
-//! for a whole frame.
+//! side. Every ray that meets both meets the solid on that side first. This needs no depth, and
+//! holds for a whole frame.
 
 use bumpalo::Bump;
 

@@ -28,8 +28,8 @@ pub(crate) struct Row<'r> {
     pub(crate) decisions: Option<&'r mut [Decision]>,
     /// What the samples show from the frame before, if only differences are to be written.
     pub(crate) history: Option<&'r mut [RowHistory]>,
-    /// Pixels that are still to be filled: the end of a row and the beginning of the next mostly show
-    /// one paint, and lie side by side.
+    /// Pixels that are still to be filled: the end of a row and the beginning of the next mostly
+    /// show one paint, and lie side by side.
     pub(crate) pending: Option<(Range<usize>, &'r Paint)>,
     pub(crate) in_doubt: InDoubt,
 }
