@@ -71,11 +71,8 @@ impl<R: Real> Picture<'_, R> {
         let mut text = String::new();
         if self.stage == Stage::Image {
             let middle = Short(f64::from(self.size) / 2.0);
-            say(
-                &mut text,
-                "quadrant",
-                format!("column {column} and row {row} against N/2 = {middle}, as in Code 2-1"),
-            );
+            let sides = format!("column {column} and row {row} against N/2 = {middle}");
+            say(&mut text, "quadrant", format!("{sides}, as in Code 2-1"));
         } else {
             self.explain_ray(&mut text, column, row)?;
             self.explain_decision(&mut text, column, row, decision)?;
@@ -87,48 +84,26 @@ impl<R: Real> Picture<'_, R> {
     fn explain_ray(&self, text: &mut String, column: u32, row: u32) -> Result<(), R::Doubt> {
         let ray = self.eye_ray(column, row);
         let half = f64::from(self.size) / 2.0;
-        let (u, v) = (
-            (f64::from(column) - half) / half,
-            (f64::from(row) - half) / half,
-        );
-        say(text, "u, v", format!("{}, {}", Short(u), Short(v)));
-        say(
-            text,
-            "e",
-            format!(
-                "{}  the pixel's place on the screen",
-                Triple(self.point(ray.origin))
-            ),
-        );
-        say(
-            text,
-            "d",
-            format!(
-                "{}  the way the eye looks",
-                Triple(self.unit(ray.direction.vector))
-            ),
-        );
-        let solids = match self.stage {
+        let [u, v] = [column, row].map(|number| Short((f64::from(number) - half) / half));
+        say(text, "u, v", format!("{u}, {v}"));
+        let e = Triple(self.point(ray.origin));
+        say(text, "e", format!("{e}  the pixel's place on the screen"));
+        let d = Triple(self.unit(ray.direction.vector));
+        say(text, "d", format!("{d}  the way the eye looks"));
+        let kinds = match self.stage {
             Stage::Spheres => SolidKinds::Spheres,
             Stage::Tetrahedron => SolidKinds::Tetrahedra,
             _ => SolidKinds::All,
         };
-        let first = self.view.first_hit((column, row), &ray, None, solids)?;
-        for (solid, hit) in self.view.hits((column, row), &ray, false, solids)? {
+        let first = self.view.first_hit((column, row), &ray, None, kinds)?;
+        for (solid, hit) in self.view.hits((column, row), &ray, false, kinds)? {
             let rank = if first.as_ref().is_some_and(|(nearest, _)| *nearest == solid) {
                 ", first of the solids"
             } else {
                 ""
             };
-            say(
-                text,
-                "meets",
-                format!(
-                    "{} at t = {}{rank}",
-                    self.name(solid, hit.face),
-                    Short(self.parameter(&ray, &hit))
-                ),
-            );
+            let (name, t) = (self.name(solid, hit.face), self.parameter(&ray, &hit));
+            say(text, "meets", format!("{name} at t = {t}{rank}"));
         }
         if let Some(surface) = &self.surface {
             let (depth, point) = self.surface_point(surface, &ray, row);
@@ -138,13 +113,11 @@ impl<R: Real> Picture<'_, R> {
                 "beside the square"
             };
             let t = Short(self.in_scene(depth) * 109f64.sqrt());
+            let place = format!("{} {inside}", Triple(self.point(point)));
             say(
                 text,
                 "meets",
-                format!(
-                    "the surface's plane at t = {t}, {} {inside}",
-                    Triple(self.point(point))
-                ),
+                format!("the surface's plane at t = {t}, {place}"),
             );
         }
         Ok(())
@@ -171,46 +144,40 @@ impl<R: Real> Picture<'_, R> {
                     .view
                     .casters(&self.view.ray_to_light(point, surface.square.support))?;
                 self.explain_shadow(text, "the surface", &casters);
-                let looking = Line {
+                let mirrored_ray = Line {
                     origin: point,
                     leaves: Some(surface.square.support),
                     ..ray
                 };
                 if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {
                     let [x, y, z] = self.unit(ray.direction.vector);
-                    say(
-                        text,
-                        "r",
-                        format!("{}  the way the mirrored ray goes", Triple([x, -y, z])),
-                    );
-                    for (solid, hit) in
-                        mirror
-                            .view
-                            .hits((column, row), &looking, true, SolidKinds::All)?
-                    {
-                        let t = Short(self.parameter(&looking, &hit));
+                    let r = Triple([x, -y, z]);
+                    say(text, "r", format!("{r}  the way the mirrored ray goes"));
+                    let (pixel, kinds) = ((column, row), SolidKinds::All);
+                    for (solid, hit) in mirror.view.hits(pixel, &mirrored_ray, true, kinds)? {
+                        let (name, t) = (
+                            self.name(solid, hit.face),
+                            self.parameter(&mirrored_ray, &hit),
+                        );
                         say(
                             text,
                             "mirrors",
-                            format!("{} at t = {t} from the surface", self.name(solid, hit.face)),
+                            format!("{name} at t = {t} from the surface"),
                         );
                     }
-                    say(
+                    let name = self.name(usize::from(seen.solid), seen.face);
+                    say(text, "shows", format!("{name}, mirrored"));
+                    self.explain_solid(
                         text,
-                        "shows",
-                        format!(
-                            "{}, mirrored",
-                            self.name(usize::from(seen.solid), seen.face)
-                        ),
-                    );
-                    self.explain_solid(text, &mirror.view, ((column, row), &looking), true, seen)?;
+                        &mirror.view,
+                        ((column, row), &mirrored_ray),
+                        true,
+                        seen,
+                    )?;
                     say(text, "reflectance", Short(mirror.reflectance.to_f64()));
                 } else if decision == Decision::Surface && surface.mirror.is_some() {
-                    say(
-                        text,
-                        "mirrors",
-                        "no solid: the surface shows its own colour",
-                    );
+                    let nothing = "no solid: the surface shows its own colour";
+                    say(text, "mirrors", nothing);
                 }
             }
             (_, None) => {}
@@ -234,85 +201,48 @@ impl<R: Real> Picture<'_, R> {
             .into_iter()
             .find(|(index, _)| *index == solid);
         let Some((_, hit)) = only else { return Ok(()) };
-        let upright = |[x, y, z]: [f64; 3]| if mirrored { [x, -y, z] } else { [x, y, z] };
+        let unit = |vector: Vector<R>| {
+            let [x, y, z] = self.unit(vector);
+            Triple([x, if mirrored { -y } else { y }, z])
+        };
         let height = self
             .surface
             .as_ref()
             .map_or(0.0, |surface| self.in_scene(surface.square.height));
         let [x, y, z] = self.point(hit.point);
-        let point = if mirrored {
-            [x, 2.0 * height - y, z]
-        } else {
-            [x, y, z]
-        };
-        say(text, "point", Triple(point));
-        say(text, "n", Triple(upright(self.unit(hit.normal.vector))));
+        let y = if mirrored { 2.0 * height - y } else { y };
+        say(text, "point", Triple([x, y, z]));
+        say(text, "n", unit(hit.normal.vector));
         if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
             return Ok(());
         }
         let shading = &view.shading;
-        say(
-            text,
-            "l",
-            format!(
-                "{}  toward the light",
-                Triple(upright(self.unit(shading.to_light.vector)))
-            ),
-        );
-        say(
-            text,
-            "v",
-            format!(
-                "{}  toward where the ray came from",
-                Triple(upright(self.unit(-ray.direction.vector)))
-            ),
-        );
+        let (l, v) = (unit(shading.to_light.vector), unit(-ray.direction.vector));
+        say(text, "l", format!("{l}  toward the light"));
+        say(text, "v", format!("{v}  toward where the ray came from"));
         match shading.halfway() {
-            Some(halfway) => say(text, "h", Triple(upright(self.unit(halfway)))),
+            Some(halfway) => say(text, "h", unit(halfway)),
             None => say(text, "h", "none: v + l = 0, and there is no highlight"),
         }
         let terms = shading.terms(&hit.normal)?;
         say(text, "n·l", Short(terms.normal_light.to_f64()));
-        if let Some(one_minus) = terms.one_minus_normal_halfway {
-            say(
-                text,
-                "n·h",
-                format!(
-                    "{}  (1 − n·h = {})",
-                    Short(1.0 - one_minus.to_f64()),
-                    Short(one_minus.to_f64())
-                ),
-            );
+        if let Some(rest) = terms.one_minus_normal_halfway.map(|rest| rest.to_f64()) {
+            let (cosine, rest) = (Short(1.0 - rest), Short(rest));
+            say(text, "n·h", format!("{cosine}  (1 − n·h = {rest})"));
         }
         if self.stage >= Stage::Shadow {
             self.explain_solid_shadow(text, view, &hit)?;
         }
-        say(
-            text,
-            "ambient",
-            format!("{}  k_a I_a", self.amounts(shading.ambient())),
-        );
+        let ambient = self.amounts(shading.ambient());
+        say(text, "ambient", format!("{ambient}  k_a I_a"));
         if !seen.in_shadow {
-            say(
-                text,
-                "diffuse",
-                format!("{}  k_d I max(0, n·l)", self.amounts(terms.diffuse)),
-            );
+            let [diffuse, specular] = [terms.diffuse, terms.specular].map(|v| self.amounts(v));
+            say(text, "diffuse", format!("{diffuse}  k_d I max(0, n·l)"));
             let power = format!("k_s I max(0, n·h)^{}", self.scene.material().exponent);
-            say(
-                text,
-                "specular",
-                format!("{}  {power}", self.amounts(terms.specular)),
-            );
+            say(text, "specular", format!("{specular}  {power}"));
         }
-        say(
-            text,
-            "c",
-            format!(
-                "{}  the solid's colour, times the sum",
-                self.amounts(self.solid_color(solid))
-            ),
-        );
+        let c = self.amounts(self.solid_color(solid));
+        say(text, "c", format!("{c}  the solid's colour, times the sum"));
         Ok(())
     }
 
@@ -323,11 +253,8 @@ impl<R: Real> Picture<'_, R> {
         hit: &Hit<R>,
     ) -> Result<(), R::Doubt> {
         if view.shading.facing_light(&hit.normal)?.is_le() {
-            say(
-                text,
-                "in shadow",
-                "the point is turned away from the light: n·l ≤ 0",
-            );
+            let why = "the point is turned away from the light: n·l ≤ 0";
+            say(text, "in shadow", why);
             return Ok(());
         }
         let ray = view.ray_to_light(hit.point, hit.support);
@@ -344,18 +271,12 @@ impl<R: Real> Picture<'_, R> {
 
     fn explain_shadow(&self, text: &mut String, of: &str, casters: &[usize]) {
         if casters.is_empty() {
-            say(
-                text,
-                "in light",
-                format!("nothing stands between {of} and the light"),
-            );
+            let why = format!("nothing stands between {of} and the light");
+            say(text, "in light", why);
         }
         for &solid in casters {
-            say(
-                text,
-                "in shadow",
-                format!("{} is in the light's way", self.name(solid, None)),
-            );
+            let name = self.name(solid, None);
+            say(text, "in shadow", format!("{name} is in the light's way"));
         }
     }
 
@@ -369,8 +290,8 @@ impl<R: Real> Picture<'_, R> {
     }
 
     /// t of a hit, for a direction of length 1.
-    fn parameter(&self, ray: &Line<R>, hit: &Hit<R>) -> f64 {
-        self.in_scene(hit.depth) * ray.direction.squared_length.to_f64().sqrt()
+    fn parameter(&self, ray: &Line<R>, hit: &Hit<R>) -> Short {
+        Short(self.in_scene(hit.depth) * ray.direction.squared_length.to_f64().sqrt())
     }
 
     /// A point of view space in the scene.
