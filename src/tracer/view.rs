@@ -276,24 +276,16 @@ impl<'f, R: Real> View<'f, R> {
         kinds: SolidKinds,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
         match self.spheres.get(solid) {
-            Some(sphere) => {
-                let takes_part =
-                    kinds != SolidKinds::Tetrahedra && (!ahead || sphere.is_ahead(ray)?);
-                if takes_part {
-                    sphere.first_hit(ray)
-                } else {
-                    Ok(None)
-                }
-            }
+            Some(_) if kinds == SolidKinds::Tetrahedra => Ok(None),
+            None if kinds == SolidKinds::Spheres => Ok(None),
+            Some(sphere) if ahead && !sphere.is_ahead(ray)? => Ok(None),
+            Some(sphere) => sphere.first_hit(ray),
             None => {
                 let t = &self.tetrahedra[solid - self.spheres.len()];
-                let takes_part = kinds != SolidKinds::Spheres
-                    && (!ahead || t.solid.is_ahead(&t.from_eye, ray)?);
-                if takes_part {
-                    t.solid.first_hit(&t.from_eye, ray)
-                } else {
-                    Ok(None)
+                if ahead && !t.solid.is_ahead(&t.from_eye, ray)? {
+                    return Ok(None);
                 }
+                t.solid.first_hit(&t.from_eye, ray)
             }
         }
     }

@@ -112,13 +112,7 @@ pub(crate) struct ActiveEdges {
     /// The new edges of changed regions, by their columns in the first row of the band.
     arrivals: Vec<(u32, Edge)>,
     /// The memory in which `edges` and `gaps` are made anew.
-    spare: Spare,
-}
-
-#[derive(Default)]
-struct Spare {
-    edges: Vec<Edge>,
-    gaps: Vec<Packed>,
+    spare: (Vec<Edge>, Vec<Packed>),
 }
 
 impl ActiveEdges {
@@ -360,7 +354,7 @@ impl ActiveEdges {
             }
         }
         self.arrivals.sort_unstable();
-        let Spare { edges, gaps } = &mut self.spare;
+        let (edges, gaps) = &mut self.spare;
         edges.clear();
         gaps.clear();
         let mut arrivals = self.arrivals.iter().peekable();

@@ -171,7 +171,7 @@ impl Case<'_> {
         let m = row_sphere.m.at(y);
         let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
-        let mut cache = SphereBand::NONE;
+        let mut cache = SphereBand::default();
         cache.find(simd, row_sphere, below, self.grid);
         let columns = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {

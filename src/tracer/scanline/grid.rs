@@ -70,15 +70,7 @@ impl Grid {
 }
 
 /// The coordinates of neighbouring rows or columns, relative to the first.
-const OFFSETS: [f64; ROWS] = {
-    let mut offsets = [0.0; ROWS];
-    let mut number = 0;
-    while number < ROWS {
-        offsets[number] = 3.0 * number as f64;
-        number += 1;
-    }
-    offsets
-};
+const OFFSETS: [f64; ROWS] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
 
 /// As many offsets as there are lanes, from that of number `first` on.
 #[inline(always)]

@@ -28,7 +28,7 @@ const NUDGE: f64 = 1.0 / (1 << 20) as f64;
 type Intervals = [[u32; ROWS]; 2];
 
 /// The columns of a sphere in a band of rows.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct SphereBand {
     /// The columns in the zones: so far inside the outline that f64 shades them with bounds.
     shadeable: Intervals,
@@ -48,7 +48,7 @@ pub(crate) fn bit_of(caster: usize) -> u64 {
 }
 
 /// The sign of a form that is concave or convex.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Arcs {
     /// The columns in which a concave form is positive, or a convex one negative.
     inside: Intervals,
@@ -84,7 +84,7 @@ impl SphereCache {
         self.first.clear();
         self.first.resize(count, None);
         if self.cache.len() < count {
-            self.cache.resize(count, SphereBand::NONE);
+            self.cache.resize(count, SphereBand::default());
         }
     }
 
@@ -110,19 +110,7 @@ impl SphereCache {
 }
 
 impl SphereBand {
-    pub(crate) const NONE: SphereBand = SphereBand {
-        shadeable: [[0; ROWS]; 2],
-        zones: [[[0; ROWS]; 2]; ZONES - 1],
-        facing: Arcs {
-            inside: [[0; ROWS]; 2],
-            is_concave: true,
-            settled: 0,
-        },
-        bright: [[0; ROWS]; 2],
-        casters: 0,
-    };
-
-    /// In one of the rows.
+    /// The columns in one of the rows.
     pub(crate) fn row(&self, row: usize) -> SphereColumns {
         let of = |intervals: &Intervals| (intervals[0][row], intervals[1][row]);
         let Arcs {
@@ -165,7 +153,7 @@ impl SphereBand {
     pub(crate) fn find<S: Simd>(&mut self, simd: S, sphere: &RowSphere, first: u32, grid: Grid) {
         self.facing.is_concave = sphere.light.is_concave == Some(true);
         self.facing.settled = 0;
-        self.bright = SphereBand::NONE.bright;
+        self.bright = Intervals::default();
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = offsets::<S>(simd, lane) + grid.coordinate(first);
             let m = sphere.m.of_rows::<S>(y);

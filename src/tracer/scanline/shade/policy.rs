@@ -10,6 +10,17 @@ use fearless_simd::prelude::*;
 
 use crate::tracer::scanline::shade::lane::Lane;
 
+/// The arithmetic that a kernel shades spheres with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::tracer) enum Precision {
+    /// f32.
+    Single,
+    /// f64.
+    Double,
+    /// f64 with bounds on its errors; pixels in doubt are decided by themselves.
+    Bounded,
+}
+
 /// A SIMD vector of a policy's floats.
 pub(crate) type LaneVector<S, P> = <<P as Policy<S>>::Lane as Lane>::Vector<S>;
 

@@ -5,9 +5,8 @@ use fearless_simd::dispatch;
 
 use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::Columns;
-use crate::tracer::scanline::precision::Precision;
 use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of};
-use crate::tracer::scanline::shade::policy::Certified;
+use crate::tracer::scanline::shade::policy::{Certified, Precision};
 use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::write::paint::Paint;

@@ -8,7 +8,7 @@ use crate::tracer::decision::Decision;
 use crate::tracer::in_doubt::InDoubt;
 use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::{Columns, Grid};
-use crate::tracer::scanline::precision::Precision;
+use crate::tracer::scanline::shade::policy::Precision;
 use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
 
