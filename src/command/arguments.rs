@@ -53,11 +53,11 @@ impl PictureArguments {
     }
 }
 
-/// Another program to make the pictures, if any.
+/// Another program to make the picture, if any.
 #[derive(Args)]
 pub(crate) struct ProgramArguments {
-    /// A program that makes the pictures instead: its path and arguments, in one word of the shell
-    #[arg(long, value_name = "COMMAND", conflicts_with = "kernel")]
+    /// A program to make the picture: its path and arguments, in one word of the shell
+    #[arg(long, value_name = "COMMAND")]
     program: Option<String>,
     /// How long the program may take for a picture; 10 if not given
     #[arg(long, value_name = "SECONDS", requires = "program", value_parser = seconds)]
@@ -65,6 +65,11 @@ pub(crate) struct ProgramArguments {
 }
 
 impl ProgramArguments {
+    /// Whether there is one.
+    pub(crate) fn is_given(&self) -> bool {
+        self.program.is_some()
+    }
+
     /// The program of `--program`, started. Its diagnostics are lines on standard error.
     pub(crate) fn start(&self) -> Result<Option<Program>, ProgramError> {
         let Some(command) = &self.program else {

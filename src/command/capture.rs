@@ -147,6 +147,10 @@ impl Capture {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let job = Job::new(arguments)?;
     let picture = &arguments.picture;
+    if arguments.program.is_given() && picture.kernel.is_some() {
+        let message = "a picture is made by one of the two: give --kernel or --program";
+        return Err(wrong(message).into());
+    }
     let size = picture.size;
     let mut capture = Capture {
         scene: picture.scene()?,

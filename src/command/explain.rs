@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, alpha) = (picture.scene()?, arguments.angle.alpha());
     let (column, row) = (arguments.column, arguments.row);
     let tracer = Tracer::new(picture.kernel.unwrap_or_default(), picture.threads())?;
-    let mut text = tracer.explain(&scene, stage, alpha, picture.size, (column, row))?;
+    let mut text = String::new();
     if let Some(mut program) = arguments.program.start()? {
         let mut image = Image::new(picture.size)?;
         program.ask(&scene, stage, alpha, &mut image)?;
@@ -48,5 +48,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             text += &format!("{:<12} {hint}\n", "hint");
         }
     }
+    text += &tracer.explain(&scene, stage, alpha, picture.size, (column, row))?;
     print(&text)
 }

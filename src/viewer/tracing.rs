@@ -259,8 +259,8 @@ impl Pictures {
         Ok((traced, image))
     }
 
-    /// A pixel, worked through by the kernel, or by that of the truth; and what is wrong with the
-    /// pixel in `image`, which a renderer made.
+    /// What is wrong with the pixel in `image`, if a renderer made that; and the pixel, worked through
+    /// by the kernel, or by that of the truth.
     fn explain(
         &mut self,
         frame: &Frame,
@@ -275,13 +275,14 @@ impl Pictures {
         };
         choose(tracer, kernel_of(&frame.renderer), *threads)?;
         let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
-        let mut text = tracer.explain(scene, stage, alpha, self.size, pixel.into())?;
+        let mut text = String::new();
         if let Some(image) = image {
             let examination = Examination::new(scene, stage, alpha, image, TOLERANCE, *threads)?;
             if let Some(diagnosis) = examination.pixel(pixel.x, pixel.y) {
                 text += &diagnosis.to_string();
             }
         }
+        text += &tracer.explain(scene, stage, alpha, self.size, pixel.into())?;
         Ok(text)
     }
 
