@@ -213,13 +213,13 @@ const FAULTS: [(&str, &str, &str); 16] = [
     ),
     (
         "read line; head -c 700 /dev/zero; sleep 1000",
-        "0.5",
-        "wrote 700 of 768 bytes in 0.5 s: let it call fflush(stdout) after every picture, or give it more time by `--program-timeout`",
+        "2",
+        "wrote 700 of 768 bytes in 2 s: let it call fflush(stdout) after every picture, or give it more time by `--program-timeout`",
     ),
     (
         "read line; while true; do printf 0; sleep 10; done",
-        "0.5",
-        r#"wrote 1 of 768 bytes ("0") in 0.5 s: let it call fflush(stdout) after every picture, or give it more time by `--program-timeout`"#,
+        "2",
+        r#"wrote 1 of 768 bytes ("0") in 2 s: let it call fflush(stdout) after every picture, or give it more time by `--program-timeout`"#,
     ),
     (
         "read line; echo tracing; head -c 768 /dev/zero; read line",
