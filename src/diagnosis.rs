@@ -1,8 +1,8 @@
 //! What is wrong with a picture that somebody else has made of a scene.
 //!
-//! A pixel that is not right shows *something*: mostly what another decision would give there, such
-//! as the surface in shadow where it is lit. The tracer knows the colour of every decision that can
-//! be taken, so each wrong pixel gets a [`Verdict`], and they are counted by kind.
+//! A wrong pixel mostly has the colour of another decision, such as that of the surface in shadow
+//! where the surface is lit. The tracer knows the colour of every decision, so each wrong pixel
+//! gets a [`Verdict`], and verdicts are counted by kind.
 //!
 //! ```
 //! use firsthit::diagnosis::{Examination, TOLERANCE, Verdict};
@@ -22,8 +22,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Some mistakes are known, and what a picture with one of them looks like. Where such a picture
-//! explains the given one, it earns a [`Hint`] at what to look at in the code.
+//! Some mistakes of tracers are well known, and their pictures can be computed. Where such a
+//! picture explains the given one, the given one earns a [`Hint`] at what to look at in the code.
 
 mod fits;
 mod hint;
@@ -44,18 +44,18 @@ pub use verdict::{Summary, Verdict};
 use words::Words;
 pub use wrong_decision::{WrongDecision, WrongPixels};
 
-/// How far a sample may be from the one that a decision gives, if nobody says otherwise: as far as
-/// a byte of a display is from the next.
+/// The usual tolerance: the distance of two neighbouring bytes of a display. A sample may be as far
+/// from that of a decision and still count as its sample.
 pub const TOLERANCE: f32 = 1.0 / 255.0;
 
-/// Why there is no truth to compare a picture with.
+/// An examination that cannot be begun, for want of the true picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExaminationError {
     /// The true picture cannot be traced.
     #[error(transparent)]
     Trace(#[from] TraceError),
-    /// There is no memory for it.
+    /// There is no memory for the true picture.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
@@ -82,8 +82,8 @@ pub struct Diagnosis {
 
 impl<'a> Examination<'a> {
     /// Traces the truth: `scene` in `stage`, seen at angle `alpha` in radians, with `threads`
-    /// threads, 0 being one a core. Samples of `image` that are at most `tolerance` from those that
-    /// a decision gives are taken for them, [`TOLERANCE`] mostly.
+    /// threads, 0 being one a core. A pixel of `image` counts as that of a decision if every sample
+    /// is at most `tolerance` from that decision's; [`TOLERANCE`] is the usual one.
     ///
     /// # Errors
     /// [`ExaminationError::Trace`] where `alpha` is not finite or there are no threads,
@@ -174,8 +174,9 @@ impl<'a> Examination<'a> {
         })
     }
 
-    /// The mistakes that explain the picture, if it is explained by any that is known; `diagnosis`
-    /// is its own. Of several that explain one picture those are told whose pictures it is most like.
+    /// Hints at the well-known mistakes that explain the picture, which has this `diagnosis`; none
+    /// where no mistake explains the picture, and of several mistakes only those that explain it
+    /// best.
     pub fn hints(&self, diagnosis: &Diagnosis) -> Vec<Hint> {
         if diagnosis.summary.wrong() == 0 {
             return Vec::new();
@@ -260,7 +261,7 @@ impl Compared {
         }
     }
 
-    /// The largest absolute error of a sample; infinite where one is a NaN, or infinite itself.
+    /// The largest absolute error of a sample; infinite where a sample is a NaN or infinite.
     fn error(&self) -> f64 {
         let errors = [0, 1, 2].map(|channel| {
             let error = f64::from(self.samples[channel]) - f64::from(self.true_samples[channel]);

@@ -19,8 +19,8 @@ type Candidate = (Decision, [f32; 3]);
 pub(super) struct Candidates<'c, 'f> {
     colors: &'c Colors<'f>,
     tolerance: f32,
-    /// Those whose colour all their pixels share, by their reds. Of several solids of one colour
-    /// it is the first.
+    /// The decisions whose colour all their pixels share, sorted by red. Of several solids of one
+    /// colour the first stands for all.
     shared: Vec<Candidate>,
 }
 
@@ -42,12 +42,12 @@ impl<'c, 'f> Candidates<'c, 'f> {
         }
     }
 
-    /// The decisions, `most` at most, that give a pixel `samples` within the tolerance, in whose
-    /// place `truth` is the right one.
+    /// The wrong decisions, `most` at most, whose colour is within the tolerance of `samples` in a
+    /// pixel whose true decision is `truth`.
     ///
-    /// Only where no decision fits that the pixel's line can lead to are others looked at: of two
-    /// solids of one colour the one that is in this place is meant. Of decisions that give the same
-    /// samples and are wrong in the same way the first is told.
+    /// Solids that the pixel's line cannot meet are looked at only where nothing else fits: of two
+    /// solids of one colour, the one at this pixel is the likelier. Decisions of equal samples that
+    /// are wrong in the same way count as one, the first.
     pub(super) fn fitting(
         &self,
         pixel: (u32, u32),
@@ -99,8 +99,8 @@ impl<'c, 'f> Candidates<'c, 'f> {
     }
 }
 
-/// A solid in shadow looks the same on all its faces: it is seen at the true one, where it is the
-/// true solid.
+/// The decision with the face of the true one, where both are of one solid, in shadow: the colour
+/// of a solid in shadow does not tell its face.
 fn with_face_of(decision: Decision, truth: Decision) -> Decision {
     let with_face = |seen: Seen, truth: Seen| Seen {
         face: if seen.in_shadow && seen.solid == truth.solid {

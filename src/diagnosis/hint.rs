@@ -11,7 +11,7 @@ pub enum Hint {
     UpsideDown,
     /// Rows and columns are swapped.
     Transposed,
-    /// Pixels are seen at their middles, where their corners are meant.
+    /// Eye rays go through the middles of pixels, instead of their lower left corners.
     HalfPixelOff,
     /// The samples are encoded for a display: by sRGB's curve, or to the power of 1/2.2.
     Gamma,
@@ -19,7 +19,7 @@ pub enum Hint {
     Bgr,
     /// The samples go from 0 to 255.
     Bytes,
-    /// Radians are taken for degrees, or turned into them.
+    /// α is taken for degrees, or converted to degrees.
     Degrees,
     /// n·l has the wrong sign.
     LightSign,
@@ -27,9 +27,9 @@ pub enum Hint {
     ShadowDirection,
     /// Shadow rays meet what lies behind their origin, or the solid that they start from.
     ShadowBehind,
-    /// Solids are seen where the eye's rays leave them.
+    /// Rays hit solids where they leave them: the larger root is taken for the smaller one.
     FarRoot,
-    /// A shadow ray meets the solid that it starts from, by chance.
+    /// Shadow acne: rounding decides whether a shadow ray meets the solid that it starts from.
     ShadowAcne,
 }
 

@@ -1,7 +1,7 @@
-//! Which known mistake explains a picture: the picture that each would make, held against it.
+//! Known mistakes as hypotheses: the picture of each mistake is compared with the given one.
 //!
-//! Everything is looked at in a sample of the pixels, spread evenly over the picture, so that a
-//! large picture and a scene of many solids take no longer than others.
+//! Pictures are compared in a sample of their pixels, spread evenly, so that a large picture and a
+//! scene of many solids take no longer than others.
 
 use std::f64::consts::PI;
 
@@ -14,23 +14,21 @@ use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::{Decision, Far, Mistake, Mistaken, Toward, with_pixels};
 
-/// A hypothesis is tested by no fewer pixels that can tell it from the truth: fewer agree by
-/// chance.
+/// The fewest pixels that can tell a hypothesis from the truth: fewer might agree by chance.
 const ENOUGH: u32 = 16;
 
-/// Of the pixels that can tell, and of those that are wrong, nine in ten must speak for a mistake:
-/// all of them would, but for the mistake's own details, such as how ties are decided.
+/// The least share of the telling pixels and of the wrong ones that must agree with a hypothesis.
+/// All would, but people make a mistake in slightly different ways.
 const MOST: f64 = 0.9;
 
-/// Pixels that are looked at in scenes of few solids: an edge of one pixel's width all around a
-/// solid is hundreds of them.
+/// The most pixels of a sample: a border one pixel wide around a solid is hundreds of them.
 const SAMPLE: usize = 1 << 15;
 
-/// Shadow rays are tested against all solids: so many tests for a hypothesis are done in a
-/// fraction of a second.
+/// The most pixels of a sample, times solids, for shadow rays are tested against all solids: so
+/// many tests take a fraction of a second.
 const TESTS: usize = 1 << 22;
 
-/// A hypothesis that has not explained half of so many wrong pixels is given up.
+/// The number of wrong pixels after which a hypothesis is given up that explains less than half.
 const PATIENCE: u32 = 64;
 
 /// Pixels of a picture, each with what is given and what is true.
@@ -50,7 +48,7 @@ impl Sample {
         let solids = scene.spheres().len() + scene.tetrahedra().len();
         let (size, all) = (u64::from(given.size()), given.samples().len() / 3);
         let count = SAMPLE.min(TESTS / solids.max(1)).min(all);
-        // A prime larger than any number of rows: every pixel comes once before one comes again.
+        // A prime larger than any size is coprime with the number of pixels: no pixel comes twice.
         const STRIDE: u64 = 2_654_435_761;
         let pixels = (0..count as u64).filter_map(|number| {
             let index = number * STRIDE % (size * size);
@@ -67,8 +65,8 @@ impl Sample {
         }
     }
 
-    /// The share of the pixels that are not as in another picture, whose samples are `scale` times
-    /// those of others; `None` where it explains the given picture too badly to be its reason.
+    /// The share of the pixels that are not as `hypothesis` has them; `None` where the hypothesis
+    /// is rejected. `scale` is how large its samples are, compared with true ones.
     fn unlike(
         &self,
         scale: f32,
@@ -84,7 +82,7 @@ impl Sample {
             let is_shown = is_within(tolerance, pixel.given, other);
             all += 1;
             unlike += u32::from(!is_shown);
-            // No sample is within the tolerance of both.
+            // A pixel that can tell: nothing is within the tolerance of both.
             if !is_within(2.0 * tolerance, other, pixel.truth) {
                 telling += 1;
                 shown += u32::from(is_shown);
@@ -103,8 +101,7 @@ impl Sample {
     }
 }
 
-/// The hints at the known mistakes whose pictures the given one is most like, of those that explain
-/// the picture of a frame.
+/// The hints at the known mistakes that explain the given picture of a frame best.
 pub(super) fn hints_of_known_mistakes(
     frame: (&Scene, Stage, f64, u32),
     truth: &Image,
@@ -128,16 +125,16 @@ pub(super) fn hints_of_known_mistakes(
     hints
 }
 
-/// Tests a hint, given the picture that the mistake makes, whose samples are so many times those of
-/// others.
+/// Tests a hint by the picture that its mistake makes, given how large the samples of that picture
+/// are, compared with true ones.
 type Test<'t> = dyn FnMut(Hint, f32, &dyn Fn((u32, u32)) -> Option<[f32; 3]>) + 't;
 
-/// The true samples, at other places or in another form.
+/// Tests mistakes that rearrange or encode the true samples.
 fn test_rearrangements(truth: &Image, test: &mut Test<'_>) {
     let at = |column, row| truth.pixel(column, row);
     let rows = truth.size();
     test(Hint::UpsideDown, 1.0, &|(x, y)| at(x, rows - 1 - y));
-    // With v upside down, row 0 shows a row that the true picture has not.
+    // Where v has the wrong sign, row 0 shows what would be above the true picture.
     test(Hint::UpsideDown, 1.0, &|(x, y)| at(x, rows - y));
     test(Hint::Transposed, 1.0, &|(x, y)| at(y, x));
     test(Hint::Bgr, 1.0, &|(x, y)| {
@@ -163,9 +160,9 @@ fn srgb(sample: f64) -> f64 {
     }
 }
 
-/// The true scene, seen from another angle or at other places of the screen.
+/// Tests mistakes that turn the eye or move the pixels.
 fn test_geometries((scene, stage, alpha, size): (&Scene, Stage, f64, u32), test: &mut Test<'_>) {
-    // The middles of pixels are every other pixel of a picture of twice the size.
+    // The middles of pixels are corners of pixels in a picture of twice the size.
     with_pixels((scene, stage, alpha, 2 * size), |twice| {
         test(Hint::HalfPixelOff, 1.0, &|(x, y)| {
             Some(twice(2 * x + 1, 2 * y + 1))
@@ -180,7 +177,7 @@ fn test_geometries((scene, stage, alpha, size): (&Scene, Stage, f64, u32), test:
     }
 }
 
-/// The true scene, hit or shaded by other rules.
+/// Tests mistakes in hits, shading and shadows.
 fn test_shadings(frame: (&Scene, Stage, f64, u32), test: &mut Test<'_>) {
     let right = Mistake::default();
     let reversed = Mistake {
@@ -197,7 +194,7 @@ fn test_shadings(frame: (&Scene, Stage, f64, u32), test: &mut Test<'_>) {
     };
     let mistakes = [
         (Hint::LightSign, reversed),
-        // The way to the surface is taken with the wrong sign, too, or the way to everything.
+        // A wrong l may also serve for the surface's shadow on solids, or for all shadows.
         (
             Hint::LightSign,
             Mistake {
@@ -258,12 +255,11 @@ fn test_shadings(frame: (&Scene, Stage, f64, u32), test: &mut Test<'_>) {
     });
 }
 
-/// Of the pixels that a shadow ray's own solid shades by chance, at least one in so many stands
-/// between two that are right: mostly a third of them. Along the border of a misplaced shadow it is
-/// one in fifty.
+/// Shadow acne puts at least one in so many of its pixels between two right ones, mostly one in
+/// three. Along the border of a misplaced shadow it is one in fifty.
 const SCATTERED: u32 = 8;
 
-/// Whether lit pixels show shadow here and there.
+/// Whether shadow is scattered over lit pixels.
 pub(super) fn is_scattered_with_shadow(
     verdicts: &[Verdict],
     decisions: &[Decision],

@@ -7,7 +7,7 @@ use crate::difference::steps;
 use crate::image::display_byte;
 use crate::tracer::{Decision, say};
 
-/// What is wrong with one pixel. Displayed, it is a few lines of text, laid out as those of
+/// What is wrong with one pixel. Its display is a few lines of text, laid out as those of
 /// [`Tracer::explain`](crate::Tracer::explain).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -20,7 +20,8 @@ pub struct PixelDiagnosis {
     pub true_decision: Decision,
     /// What is wrong.
     pub verdict: Verdict,
-    /// The decisions that give the samples within the tolerance, where the true one does not.
+    /// The wrong decisions whose colour is within the tolerance of the samples; none where the
+    /// pixel is right or a rounding.
     pub explanations: Vec<Decision>,
     /// The verdict in words, one line: a sentence whose subject is the pixel.
     pub words: String,

@@ -7,16 +7,16 @@ use crate::tracer::Decision;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// Nothing: it is the true one bit for bit.
+    /// Nothing: the pixel is the true one bit for bit.
     Right,
-    /// It is within the tolerance of the true one.
+    /// The pixel is within the tolerance of the true one.
     Rounding,
-    /// It is within the tolerance of what just this decision gives, which is not the true one. The
-    /// face of a tetrahedron in shadow, which no colour tells, is the true face or 0.
+    /// The pixel is within the tolerance of the colour of this decision, a wrong one, and of no
+    /// other. The face of a tetrahedron in shadow, which no colour tells, is the true face or 0.
     Shows(Decision),
-    /// It is within the tolerance of what more than one other decision gives.
+    /// The pixel is within the tolerance of the colours of several wrong decisions.
     Several,
-    /// It is none of the colours that decisions give.
+    /// The pixel has the colour of no decision.
     AnotherColor,
     /// A sample is a NaN.
     NotANumber,

@@ -8,7 +8,7 @@ use crate::number::Bounded;
 use crate::scene::Scene;
 use crate::stage::Stage;
 
-/// So many solids are looked at behind a pixel: where thousands lie one behind the other, to look
+/// The most solids that are looked at in a pixel: where thousands lie one behind the other, looking
 /// at all of them would take minutes.
 const NEAREST: usize = 32;
 
@@ -34,8 +34,9 @@ pub(crate) fn with_colors<T>(
 }
 
 impl Colors<'_> {
-    /// The samples of a pixel, column and row, that shows what `decision` says. `None` where it
-    /// cannot: a sphere in the light that its line misses or that is turned away from the light.
+    /// The samples of the pixel at a column and a row if it shows what `decision` says; `None`
+    /// where that is a lit sphere which its line misses, or meets where the sphere is turned away
+    /// from the light.
     pub(crate) fn color(&self, decision: Decision, (column, row): (u32, u32)) -> Option<[f32; 3]> {
         if self.is_shared(decision) {
             Some(self.ladder.color(decision))
@@ -44,8 +45,8 @@ impl Colors<'_> {
         }
     }
 
-    /// Every decision whose colour all its pixels share. A face stands for all four of its
-    /// tetrahedron where their colours are one.
+    /// Every decision whose colour all its pixels share. Face 0 stands for all four faces where
+    /// they have one colour.
     pub(crate) fn shared(&self) -> impl Iterator<Item = Decision> + '_ {
         let solids = || 0..self.scene.spheres().len() + self.scene.tetrahedra().len();
         let mirrored = self.mirrors().then(solids).into_iter().flatten();
@@ -62,9 +63,9 @@ impl Colors<'_> {
             .filter(|decision| self.is_shared(*decision))
     }
 
-    /// The decisions that the line of a pixel can lead to: those of solids and the surface that
-    /// reach as far as this pixel, whatever hides them there. The nearest solids come first, and
-    /// those behind very many others are left out.
+    /// The decisions that the line of a pixel can lead to: those of the solids and the surface
+    /// whose extents hold the pixel, hidden or not. The nearest solids come first, and solids
+    /// behind very many others are left out.
     pub(crate) fn near(&self, pixel: (u32, u32)) -> impl Iterator<Item = Decision> + '_ {
         let picture = self.ladder.bounded();
         let solids = picture.view.extents.at(pixel).take(NEAREST);
@@ -145,7 +146,7 @@ impl Colors<'_> {
             .filter(move |_| is_seen)
     }
 
-    /// Whether a decision tells the colour of all its pixels: it does but for spheres in the light.
+    /// Whether all pixels of a decision share one colour: only those of lit spheres do not.
     fn is_shared(&self, decision: Decision) -> bool {
         match decision {
             Decision::Solid(seen) | Decision::Mirrored(seen) => {

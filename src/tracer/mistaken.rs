@@ -1,8 +1,7 @@
-//! Pictures as tracers make them that have one mistake: what a picture is held against to find out
-//! whether its tracer has it.
+//! Pictures of tracers that make one mistake, for comparison with the picture of a tracer that may
+//! make it.
 //!
-//! They are made of the same first hits, intersections and colours as the true picture, in f64,
-//! pixel by pixel.
+//! The pixels are those of the true picture by other [`Rules`], in f64.
 
 use std::convert::Infallible;
 
@@ -15,16 +14,16 @@ use super::view::View;
 use crate::scene::Scene;
 use crate::stage::Stage;
 
-/// What is wrong about a tracer. The default is one that is right.
+/// The mistake of a tracer; the default is none.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Mistake {
     /// n·l has the wrong sign.
     pub(crate) shading_reversed: bool,
-    /// Where solids stand that shade a point.
+    /// Where solids that shade a point stand.
     pub(crate) solids: Toward,
-    /// Where the surface is that shades a point of a solid.
+    /// Where the surface lies if it shades a point of a solid.
     pub(crate) surface: Toward,
-    /// A solid stands in its own light.
+    /// Every solid shades itself.
     pub(crate) own_shadow: bool,
     /// Which solids are hit where a ray leaves them.
     pub(crate) far: Far,
@@ -35,7 +34,7 @@ pub(crate) struct Mistake {
 pub(crate) enum Toward {
     #[default]
     Light,
-    /// On the side that is away from the light.
+    /// Away from the light.
     Away,
     /// Anywhere on the line.
     Either,
@@ -53,7 +52,7 @@ pub(crate) enum Far {
 /// A frame: a scene in a stage at a finite angle α, of N × N pixels.
 type Framed<'s> = (&'s Scene, Stage, f64, u32);
 
-/// Does `work` with the pixels of a frame, each by its column and row, by a tracer that is right.
+/// Does `work` with the true pixels of a frame, in f64, each by its column and row.
 pub(crate) fn with_pixels<T>(
     (scene, stage, alpha, size): Framed<'_>,
     work: impl FnOnce(&dyn Fn(u32, u32) -> [f32; 3]) -> T,
@@ -83,7 +82,7 @@ impl Mistaken<'_> {
         })
     }
 
-    /// The samples of the pixel at a column and a row in the picture of a tracer with this mistake.
+    /// The samples of the pixel at a column and a row, by a tracer that makes this mistake.
     pub(crate) fn pixel(&self, mistake: Mistake, column: u32, row: u32) -> [f32; 3] {
         let rules = MistakenRules {
             mistake,
@@ -203,7 +202,7 @@ fn is_shaded(
     Ok(false)
 }
 
-/// Where a line leaves a solid: where it hits it first, walked the other way.
+/// The hit where a line leaves a solid: the first hit of the reversed line.
 fn last_hit(
     view: &View<'_, f64>,
     solid: usize,

@@ -59,7 +59,7 @@ pub(super) type Pixel = (Decision, [f32; 3]);
 /// A decision, with the normal of a sphere in the light.
 type Decided<R> = Result<(Decision, Option<Normal<R>>), <R as Real>::Doubt>;
 
-/// Where solids are hit and what lies in shadow: as it is right, or as somebody has it who makes a
+/// The rules that hits and shadows follow: the right ones, unless a method is overridden by a
 /// mistake.
 pub(super) trait Rules<R: Real> {
     /// The hit of the solid that a ray hits first.
@@ -96,7 +96,7 @@ pub(super) trait Rules<R: Real> {
     }
 }
 
-/// Without a mistake.
+/// The right rules.
 struct Right;
 
 impl<R: Real> Rules<R> for Right {}
