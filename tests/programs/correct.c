@@ -9,8 +9,8 @@
 /* Compiled with -DMISTAKE=BGR, or another of these, it makes that mistake: the tests need some. */
 enum {
     NONE, UPSIDE_DOWN, TRANSPOSED, HALF_PIXEL_OFF, GAMMA, BGR, BYTES, DEGREES,
-    LIGHT_SIGN, LIGHT_DIRECTION, SHADOW_DIRECTION, SHADOW_RAY, SHADOW_BEHIND, SHADOW_LINE, SHADOW_OWN,
-    FAR_ROOT, FAR_ROOTS, SHADOW_ACNE
+    LIGHT_SIGN, LIGHT_DIRECTION, SHADOW_DIRECTION, SHADOW_RAY, SHADOW_BEHIND, SHADOW_LINE,
+    SHADOW_OWN, FAR_ROOT, FAR_ROOTS, SHADOW_ACNE
 };
 #define MAKES(one, other) (MISTAKE == one || MISTAKE == other)
 #ifndef MISTAKE
@@ -122,7 +122,9 @@ static bool meet_surface(Ray ray, double *t) {
     return fabs(point.x) <= half_width && fabs(point.z) <= half_width;
 }
 
-static Vector to_light(void) { return unit(scale(MISTAKE == LIGHT_DIRECTION ? 1 : -1, light_direction)); }
+static Vector to_light(void) {
+    return unit(scale(MISTAKE == LIGHT_DIRECTION ? 1 : -1, light_direction));
+}
 
 /* Whether a solid but this one stands between a point and the light. */
 static bool is_hidden(Vector point, int but) {
@@ -271,8 +273,10 @@ int main(void) {
                 float rgb[3] = {color.x, color.y, color.z};
                 if (MISTAKE == BGR)
                     rgb[0] = color.z, rgb[2] = color.x;
-                for (int i = 0; i < 3; i++)
-                    rgb[i] = MISTAKE == BYTES ? 255 * rgb[i] : MISTAKE == GAMMA ? powf(rgb[i], 1 / 2.2f) : rgb[i];
+                for (int i = 0; i < 3 && MISTAKE == BYTES; i++)
+                    rgb[i] = 255 * rgb[i];
+                for (int i = 0; i < 3 && MISTAKE == GAMMA; i++)
+                    rgb[i] = powf(rgb[i], 1 / 2.2f);
                 fwrite(rgb, sizeof rgb, 1, stdout);
             }
         fflush(stdout);
