@@ -565,3 +565,26 @@ fn the_largest_picture_takes_its_memory_once() {
     assert!(child.wait().unwrap().success());
     assert!(most >> 10 < 3100, "{most} KiB");
 }
+
+#[test]
+fn the_readmes_smallest_program_works() {
+    let readme = include_str!("../README.md");
+    let (_, rest) = readme.split_once("```c\n").unwrap();
+    let (source, _) = rest.split_once("```").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("smallest.c");
+    std::fs::write(&path, source).unwrap();
+    let Some(command) = compiled(&folder, path.to_str().unwrap(), &[]) else {
+        return;
+    };
+    let mut program = Program::start(&command, Duration::from_secs(10), |_| ()).unwrap();
+    let mut image = Image::new(30).unwrap();
+    for (stage, alpha) in [(Stage::Shading, -0.3), (Stage::Animation, 1e-300)] {
+        image.samples_mut().fill(0.0);
+        program
+            .ask(&Scene::builtin(), stage, alpha, &mut image)
+            .unwrap();
+        assert!(image.samples().iter().all(|&sample| sample == 0.8));
+    }
+    program.finish().unwrap();
+}

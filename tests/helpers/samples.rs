@@ -1,6 +1,7 @@
 //! The sample programs that make pictures, tests/programs.
 
 use std::io;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use tempfile::TempDir;
@@ -8,9 +9,11 @@ use tempfile::TempDir;
 use super::skipped;
 use super::text;
 
-/// The path of a sample program.
-fn source(name: &str) -> String {
-    format!("{}/tests/programs/{name}", env!("CARGO_MANIFEST_DIR"))
+/// The path of a sample program; a path with a root is one already.
+fn source(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/programs")
+        .join(name)
 }
 
 /// Whether a program of the system is there: in CI it is.
@@ -46,5 +49,5 @@ pub(crate) fn compiled(folder: &TempDir, name: &str, options: &[&str]) -> Option
 /// Python.
 pub(crate) fn interpreted(name: &str) -> Option<String> {
     let python = Command::new("python3").arg("--version").output();
-    is_there(python, "python3").then(|| format!("python3 '{}'", source(name)))
+    is_there(python, "python3").then(|| format!("python3 '{}'", source(name).display()))
 }
