@@ -51,23 +51,15 @@ impl<'p> SurfaceShadow<'p> {
         }
     }
 
-    /// The half-spaces whose intersection holds the shadow; `None` if the solid is not in it.
+    /// The half-spaces whose intersection holds the shadow; `None` if it does not reach the solid.
     fn on(&self, solid: usize) -> Option<impl Iterator<Item = HalfSpace<Bounded>>> {
-        let toward = match self.sides[solid] {
-            Side::Above => Some(Ordering::Less),
-            Side::Below => Some(Ordering::Greater),
-            Side::Across => None,
-        };
         // A reflected solid is on the other side.
-        let toward = toward.map(|toward| {
-            if self.mirrored {
-                toward.reverse()
-            } else {
-                toward
-            }
-        });
-        let may = toward.is_none_or(|toward| self.climb == toward || self.climb.is_eq());
-        let surface = self.surface.filter(|_| may)?;
+        let is_reached = match (self.sides[solid], self.mirrored) {
+            (Side::Across, _) => true,
+            (Side::Above, false) | (Side::Below, true) => self.climb.is_le(),
+            (Side::Above, true) | (Side::Below, false) => self.climb.is_ge(),
+        };
+        let surface = self.surface.filter(|_| is_reached)?;
         Some(surface.shadow(self.to_light, self.climb))
     }
 
