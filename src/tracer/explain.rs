@@ -41,9 +41,9 @@ impl fmt::Display for Short {
 }
 
 /// Three numbers with nine significant digits.
-struct Triple([f64; 3]);
+struct ShortTriple([f64; 3]);
 
-impl fmt::Display for Triple {
+impl fmt::Display for ShortTriple {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -86,9 +86,9 @@ impl<R: Real> Picture<'_, R> {
         let half = f64::from(self.size) / 2.0;
         let [u, v] = [column, row].map(|number| Short((f64::from(number) - half) / half));
         say(text, "u, v", format!("{u}, {v}"));
-        let e = Triple(self.point(ray.origin));
+        let e = ShortTriple(self.point(ray.origin));
         say(text, "e", format!("{e}  the pixel's place on the screen"));
-        let d = Triple(self.unit(ray.direction.vector));
+        let d = ShortTriple(self.unit(ray.direction.vector));
         say(text, "d", format!("{d}  the way the eye looks"));
         let kinds = match self.stage {
             Stage::Spheres => SolidKinds::Spheres,
@@ -113,7 +113,7 @@ impl<R: Real> Picture<'_, R> {
                 "beside the square"
             };
             let t = Short(self.in_scene(depth) * 109f64.sqrt());
-            let place = format!("{} {inside}", Triple(self.point(point)));
+            let place = format!("{} {inside}", ShortTriple(self.point(point)));
             say(
                 text,
                 "meets",
@@ -151,7 +151,7 @@ impl<R: Real> Picture<'_, R> {
                 };
                 if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {
                     let [x, y, z] = self.unit(ray.direction.vector);
-                    let r = Triple([x, -y, z]);
+                    let r = ShortTriple([x, -y, z]);
                     say(text, "r", format!("{r}  the way the mirrored ray goes"));
                     let (pixel, kinds) = ((column, row), SolidKinds::All);
                     for (solid, hit) in mirror.view.hits(pixel, &mirrored_ray, true, kinds)? {
@@ -203,7 +203,7 @@ impl<R: Real> Picture<'_, R> {
         let Some((_, hit)) = only else { return Ok(()) };
         let unit = |vector: Vector<R>| {
             let [x, y, z] = self.unit(vector);
-            Triple([x, if mirrored { -y } else { y }, z])
+            ShortTriple([x, if mirrored { -y } else { y }, z])
         };
         let height = self
             .surface
@@ -211,7 +211,7 @@ impl<R: Real> Picture<'_, R> {
             .map_or(0.0, |surface| self.in_scene(surface.square.height));
         let [x, y, z] = self.point(hit.point);
         let y = if mirrored { 2.0 * height - y } else { y };
-        say(text, "point", Triple([x, y, z]));
+        say(text, "point", ShortTriple([x, y, z]));
         say(text, "n", unit(hit.normal.vector));
         if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
             return Ok(());
@@ -315,8 +315,8 @@ impl<R: Real> Picture<'_, R> {
         [x * cos + z * sin, y, z * cos - x * sin]
     }
 
-    fn amounts(&self, v: Vector<R>) -> Triple {
-        Triple([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()])
+    fn amounts(&self, v: Vector<R>) -> ShortTriple {
+        ShortTriple([v.x.to_f64(), v.y.to_f64(), v.z.to_f64()])
     }
 }
 

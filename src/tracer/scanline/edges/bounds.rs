@@ -14,7 +14,7 @@ use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, RowPixels as _, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
-use crate::tracer::scanline::edges::enclosure::Enclosure;
+use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::depth::{Depth, Rectangle, face_plane, screen_plane};
@@ -65,7 +65,7 @@ fn check_spheres(
             let y = grid.coordinate(row);
             let enclosure =
                 dispatch!(Level::baseline(), simd => outline.enclose_row(simd, y, grid));
-            let Enclosure { possible, certain } = enclosure;
+            let ColumnEnclosure { possible, certain } = enclosure;
             // No column lies there.
             if certain[0] >= certain[1] || certain[1] <= 0.0 {
                 continue;
@@ -117,12 +117,12 @@ fn check_tetrahedra(
             for row in (0..SIZE).step_by(7) {
                 let y = grid.coordinate(row);
                 let all = [0.0, f64::from(SIZE)];
-                let mut enclosure = Enclosure {
+                let mut enclosure = ColumnEnclosure {
                     possible: all,
                     certain: all,
                 };
                 dispatch!(Level::baseline(), simd => half_plane.cut_row(simd, y, &mut enclosure));
-                let Enclosure { possible, certain } = enclosure;
+                let ColumnEnclosure { possible, certain } = enclosure;
                 // n·(X, Y, Z) = n·a.
                 let (n, a) = (exact.normal, exact.at);
                 let rest = n.y * (a.y - DoubleDouble::exact(y))

@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
-use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
+use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::scanline::rounding::{INFLATION, U};
@@ -182,12 +182,17 @@ impl Ellipse {
 
     /// The enclosures of as many rows as there are lanes.
     #[inline(always)]
-    pub(crate) fn enclose<S: Simd>(&self, simd: S, y: S::f64s, grid: Grid) -> Enclosure<S::f64s> {
+    pub(crate) fn enclose<S: Simd>(
+        &self,
+        simd: S,
+        y: S::f64s,
+        grid: Grid,
+    ) -> ColumnEnclosure<S::f64s> {
         let zero = S::f64s::splat(simd, 0.0);
         let none = S::f64s::splat(simd, NOWHERE);
         if !self.is_bounded {
             let all = S::f64s::splat(simd, f64::from(grid.size));
-            return Enclosure {
+            return ColumnEnclosure {
                 possible: [zero, all],
                 certain: [zero, none],
             };
@@ -207,15 +212,15 @@ impl Ellipse {
         let from = in_columns::<S>(grid, middle - half) + self.slack;
         let to = in_columns::<S>(grid, middle + half) - self.slack;
         let certain = [from, is_certain.select(to, none)];
-        Enclosure { possible, certain }
+        ColumnEnclosure { possible, certain }
     }
 
     /// The enclosure of the row at Y.
     #[inline(always)]
-    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> Enclosure<f64> {
+    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> ColumnEnclosure<f64> {
         let y = S::f64s::splat(simd, y);
-        let Enclosure { possible, certain } = self.enclose(simd, y, grid);
-        Enclosure {
+        let ColumnEnclosure { possible, certain } = self.enclose(simd, y, grid);
+        ColumnEnclosure {
             possible: possible.map(|end| end.as_slice()[0]),
             certain: certain.map(|end| end.as_slice()[0]),
         }
@@ -223,7 +228,7 @@ impl Ellipse {
 
     /// Whether the pixel at X, Y is in the ellipse; `None` where that is in doubt.
     pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let Enclosure { possible, certain } =
+        let ColumnEnclosure { possible, certain } =
             dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
         let column = grid.half + x / 3.0;
         if column < possible[0] || column > possible[1] {

@@ -2,7 +2,7 @@
 
 /// Enclosures of where a region begins and ends, in as many rows as there are lanes. Positions are
 /// given in columns, and both ends are included.
-pub(crate) struct Enclosure<V> {
+pub(crate) struct ColumnEnclosure<V> {
     /// No pixel outside of this interval is in the region.
     pub(crate) possible: [V; 2],
     /// Every pixel in this interval is in the region.

@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::number::{Bounded, Real};
-use crate::tracer::scanline::edges::enclosure::{Enclosure, NOWHERE};
+use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::rounding::{INFLATION, U};
@@ -140,8 +140,13 @@ impl HalfPlane {
 
     /// Intersects enclosures of as many rows as there are lanes with the half-plane.
     #[inline(always)]
-    pub(crate) fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut Enclosure<S::f64s>) {
-        let Enclosure { possible, certain } = enclosure;
+    pub(crate) fn cut<S: Simd>(
+        &self,
+        simd: S,
+        y: S::f64s,
+        enclosure: &mut ColumnEnclosure<S::f64s>,
+    ) {
+        let ColumnEnclosure { possible, certain } = enclosure;
         match &self.border {
             Border::Left(root) => {
                 let root_column = y * root.per_row + root.at;
@@ -181,9 +186,9 @@ impl HalfPlane {
     /// The same for the row at Y.
     #[cfg(test)]
     #[inline(always)]
-    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut Enclosure<f64>) {
+    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut ColumnEnclosure<f64>) {
         let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
-        let mut lanes = Enclosure {
+        let mut lanes = ColumnEnclosure {
             possible: all(enclosure.possible),
             certain: all(enclosure.certain),
         };

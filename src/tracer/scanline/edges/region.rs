@@ -18,7 +18,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::arena::collect;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
-use crate::tracer::scanline::edges::enclosure::Enclosure;
+use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::{Grid, ROWS, offsets};
 
@@ -90,7 +90,7 @@ impl<'f> Region<'f> {
                 None => {
                     let zero = S::f64s::splat(simd, 0.0);
                     let all = [zero, zero + f64::from(grid.size)];
-                    Enclosure {
+                    ColumnEnclosure {
                         possible: all,
                         certain: all,
                     }
@@ -101,7 +101,7 @@ impl<'f> Region<'f> {
             }
             let is_crossed =
                 y.simd_ge(grid.coordinate(self.rows.0)) & y.simd_lt(grid.coordinate(self.rows.1));
-            let Enclosure { possible, certain } = enclosure;
+            let ColumnEnclosure { possible, certain } = enclosure;
             let possible = [
                 grid.ceil_all::<S>(possible[0]),
                 grid.count_all::<S>(possible[1]),
@@ -198,21 +198,21 @@ mod tests {
     const SIZE: u32 = 24;
 
     /// constant + column · X + row · Y in whole numbers, and whether 0 belongs to it.
-    type Line = (i64, i64, i64, bool);
+    type WholeLine = (i64, i64, i64, bool);
 
     /// Twice a sphere's center and radius in view space, in whole numbers.
-    type Sphere = ([i64; 3], i64);
+    type WholeSphere = ([i64; 3], i64);
 
     /// Whether a pixel is in all of them: in whole numbers, so that there is nothing to round.
-    fn holds(lines: &[Line], sphere: Option<Sphere>, column: u32, row: u32) -> bool {
+    fn holds(lines: &[WholeLine], sphere: Option<WholeSphere>, column: u32, row: u32) -> bool {
         let half = i64::from(SIZE / 2);
         let [x, y] = [column, row].map(|number| 3 * (i64::from(number) - half));
-        let on_side = |&(constant, column, row, closed): &Line| {
+        let on_side = |&(constant, column, row, closed): &WholeLine| {
             let value = constant + column * x + row * y;
             value > 0 || closed && value == 0
         };
         // 109 (X − c_x)² + (10 (Y − c_y) − 3 (Z − c_z))² ≤ 109 R², four times, with Z = 3N/2.
-        let in_outline = |([cx, cy, cz], radius): Sphere| {
+        let in_outline = |([cx, cy, cz], radius): WholeSphere| {
             let across = 2 * x - cx;
             let along = 10 * (2 * y - cy) - 3 * (6 * half - cz);
             109 * across * across + along * along <= 109 * radius * radius
@@ -228,10 +228,10 @@ mod tests {
         let exact = |number: i64| Bounded::exact(number as f64);
         let (mut certain, mut doubtful) = (0, 0);
         for round in 0..3000 {
-            let lines: Vec<Line> = (0..round % 4)
+            let lines: Vec<WholeLine> = (0..round % 4)
                 .map(|_| (3 * number(40), number(4), number(4), number(1) > 0))
                 .collect();
-            let sphere: Option<Sphere> = (round % 3 > 0).then(|| {
+            let sphere: Option<WholeSphere> = (round % 3 > 0).then(|| {
                 let center = [number(90), number(90), number(90)];
                 (center, number(60).abs() + 1)
             });
