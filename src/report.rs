@@ -358,7 +358,7 @@ impl Measurement<'_> {
                 let Ok(sum) = errors else { continue };
                 match decide(tracer, scene, stage, alpha, &mut self.image)? {
                     Ok(decisions) => {
-                        sum.add((&self.image, &decisions), truth, tracer.in_doubt());
+                        sum.add((&self.image, &decisions), truth, tracer.tally());
                     }
                     Err(refusal) => *errors = Err(refusal),
                 }
@@ -534,6 +534,11 @@ impl Report {
     /// How many frames a round has.
     fn frame_count(&self) -> u64 {
         (self.frames.end() - self.frames.start()).saturating_add(1)
+    }
+
+    /// The mean of what was counted over the rows of all frames.
+    fn per_row(&self, count: u64) -> f64 {
+        count as f64 / (self.frame_count() as f64 * f64::from(self.size))
     }
 
     fn mpixel_per_s(&self, ms: Spread) -> f64 {

@@ -24,7 +24,6 @@ mod explain;
 mod extent;
 mod frame;
 mod frame_work;
-mod in_doubt;
 mod kernel;
 mod ladder;
 mod line;
@@ -41,6 +40,7 @@ mod sphere;
 mod stream;
 mod surface;
 mod surface_casters;
+mod tally;
 mod target;
 mod tetrahedron;
 mod vector;
@@ -58,7 +58,6 @@ pub use decision::{Decision, Seen};
 pub use error::TraceError;
 pub(crate) use explain::{name, say};
 use frame_work::{FrameWork, with_frame};
-pub use in_doubt::InDoubt;
 pub use kernel::Kernel;
 use ladder::{Pixels, RowPixels, Rung};
 pub(crate) use mistaken::{Far, Mistake, Mistaken, Toward, with_pixels};
@@ -66,6 +65,7 @@ use pool::{Pool, lock};
 pub use progress::Progress;
 use scanline::{Precision, ROWS, RowHistory, RowTracer, Scratch};
 pub use simd::Simd;
+pub use tally::Tally;
 use target::Target;
 
 /// The rows of a band, which one thread traces. A band is small enough to balance the threads, and
@@ -80,7 +80,7 @@ pub struct Tracer {
     local: Vec<Mutex<Local>>,
     simd: Simd,
     progress: Progress,
-    in_doubt: InDoubt,
+    tally: Tally,
     /// The mutex is never locked: it makes `Tracer` `Sync`, so that threads can explain pixels.
     arena: Mutex<Arena>,
     /// The rows of the frame that [`Tracer::retrace`] traced last.
@@ -106,7 +106,7 @@ impl Tracer {
             history: Vec::new(),
             frame: 0,
             progress: Progress::default(),
-            in_doubt: InDoubt::default(),
+            tally: Tally::default(),
             arena: Mutex::default(),
         })
     }
@@ -127,9 +127,9 @@ impl Tracer {
         self.kernel
     }
 
-    /// How many pixels of the frame traced last were in doubt: 0 for kernels without error bounds.
-    pub fn in_doubt(&self) -> InDoubt {
-        self.in_doubt
+    /// What the frame traced last took.
+    pub fn tally(&self) -> Tally {
+        self.tally
     }
 
     /// The progress of the frame that is traced now or was traced last.
@@ -297,7 +297,7 @@ impl Tracer {
         image: &mut Image,
         decisions: Option<&mut [Decision]>,
         update: Update,
-        trace: impl FnOnce(&mut Tracer, Target<'_>) -> InDoubt,
+        trace: impl FnOnce(&mut Tracer, Target<'_>) -> Tally,
     ) {
         let size = image.size();
         let mut history = std::mem::take(&mut self.history);
@@ -320,7 +320,7 @@ impl Tracer {
             decisions,
             history: remembered,
         };
-        self.in_doubt = trace(self, target);
+        self.tally = trace(self, target);
         self.history = history;
     }
 
@@ -330,7 +330,7 @@ impl Tracer {
         precision: Precision,
         target: Target<'_>,
         arena: &Arena,
-    ) -> InDoubt {
+    ) -> Tally {
         let rows = RowTracer::new(pixels, precision, self.simd.0, arena);
         let size = target.size;
         for local in &mut self.local {
@@ -350,7 +350,7 @@ impl Tracer {
                 } = band;
                 return rows.trace(first..end, samples, decisions, history, scratch, &progress);
             }
-            let mut in_doubt = InDoubt::default();
+            let mut tally = Tally::default();
             for (number, target) in (first..).zip(band.split(1)) {
                 if progress.is_cancelled() {
                     break;
@@ -358,18 +358,18 @@ impl Tracer {
                 row.resize(target.samples.len(), 0.0);
                 let only = number..number + 1;
                 let of_row = rows.trace(only, row, target.decisions, None, scratch, &progress);
-                in_doubt = in_doubt.and(of_row);
+                tally = tally.and(of_row);
                 stream::copy(row, target.samples);
             }
             stream::finish();
-            in_doubt
+            tally
         })
     }
 
-    fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> InDoubt {
+    fn trace_pixels(&mut self, pixels: &impl Pixels, target: Target<'_>) -> Tally {
         let progress = self.progress();
         self.each_band(target, |first, band, _| {
-            let mut in_doubt = InDoubt::default();
+            let mut tally = Tally::default();
             for (number, row) in (first..).zip(band.split(1)) {
                 if progress.is_cancelled() {
                     break;
@@ -380,7 +380,7 @@ impl Tracer {
                 let mut decisions = row.decisions.into_iter().flatten();
                 for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
                     let ((decision, color), rung) = pixels.pixel(column as u32, number);
-                    in_doubt.count(rung);
+                    tally.count(rung);
                     sample.copy_from_slice(&color);
                     if let Some(decided) = decisions.next() {
                         *decided = decision;
@@ -388,7 +388,7 @@ impl Tracer {
                 }
                 progress.add(1);
             }
-            in_doubt
+            tally
         })
     }
 
@@ -397,11 +397,11 @@ impl Tracer {
     fn each_band(
         &mut self,
         target: Target<'_>,
-        trace: impl Fn(u32, Target<'_>, &mut Local) -> InDoubt + Sync,
-    ) -> InDoubt {
+        trace: impl Fn(u32, Target<'_>, &mut Local) -> Tally + Sync,
+    ) -> Tally {
         let band = |number: usize, band: Target<'_>, local: &mut Local| {
-            let in_doubt = trace((number * BAND) as u32, band, local);
-            local.in_doubt = local.in_doubt.and(in_doubt);
+            let tally = trace((number * BAND) as u32, band, local);
+            local.tally = local.tally.and(tally);
         };
         match &mut self.local[..] {
             [local] => band(0, target, inner(local)),
@@ -412,9 +412,9 @@ impl Tracer {
                     band(number, target, &mut lock(&locals[thread]));
                 }),
         }
-        let in_doubt = |local: &mut Mutex<Local>| std::mem::take(&mut inner(local).in_doubt);
-        let counts = self.local.iter_mut().map(in_doubt);
-        counts.fold(InDoubt::default(), InDoubt::and)
+        let tally = |local: &mut Mutex<Local>| std::mem::take(&mut inner(local).tally);
+        let counts = self.local.iter_mut().map(tally);
+        counts.fold(Tally::default(), Tally::and)
     }
 }
 
@@ -498,7 +498,7 @@ struct Local {
     /// The row that is traced, if the picture is streamed.
     row: Vec<f32>,
     /// Counted over the rows of this frame that the thread has traced.
-    in_doubt: InDoubt,
+    tally: Tally,
 }
 
 /// How much of an image is written.

@@ -1,6 +1,6 @@
 //! Promise: f64s and double-doubles leave few pixels in doubt, also where a scene has ties.
 
-use firsthit::tracer::{Decision, InDoubt};
+use firsthit::tracer::{Decision, Tally};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 fn trace(
@@ -9,10 +9,10 @@ fn trace(
     stage: Stage,
     alpha: f64,
     size: u32,
-) -> (Vec<Decision>, InDoubt) {
+) -> (Vec<Decision>, Tally) {
     let (mut tracer, mut image) = (Tracer::new(kernel, 1).unwrap(), Image::new(size).unwrap());
     let decisions = tracer.trace_with_decisions(scene, stage, alpha, &mut image);
-    (decisions.unwrap(), tracer.in_doubt())
+    (decisions.unwrap(), tracer.tally())
 }
 
 #[test]
@@ -25,11 +25,14 @@ fn few_pixels_of_the_built_in_scene_are_in_doubt() {
         Stage::Reflection,
     ] {
         for size in [32, 64] {
-            let in_doubt = |kernel| trace(kernel, &Scene::builtin(), stage, 0.0, size).1;
-            assert_eq!(in_doubt(Kernel::Exact), InDoubt::default());
+            let tally = |kernel| trace(kernel, &Scene::builtin(), stage, 0.0, size).1;
+            let exact = tally(Kernel::Exact);
+            assert_eq!((exact.double_double, exact.arbitrary), (0, 0), "{stage}");
+            // A row shows the background on both sides at least where a solid is.
+            assert!(exact.spans > size.into() && exact.edges > 0, "{stage}");
             // Samples on edges and on the surface's border are more than double-doubles can tell.
             let most = if stage >= Stage::Shadow { 5 } else { 0 };
-            assert!(in_doubt(Kernel::Reference).arbitrary <= most, "{stage}");
+            assert!(tally(Kernel::Reference).arbitrary <= most, "{stage}");
         }
     }
 }
@@ -47,10 +50,10 @@ fn a_face_along_the_light_needs_no_digits() {
     .unwrap();
     for kernel in [Kernel::Reference, Kernel::Exact] {
         for stage in [Stage::Shading, Stage::Shadow] {
-            let (decisions, in_doubt) = trace(kernel, &scene, stage, 0.3, 40);
+            let (decisions, tally) = trace(kernel, &scene, stage, 0.3, 40);
             let is_solid = |decision: &&Decision| matches!(decision, Decision::Solid(_));
             assert!(decisions.iter().filter(is_solid).count() > 200);
-            assert_eq!(in_doubt.arbitrary, 0, "{stage}");
+            assert_eq!(tally.arbitrary, 0, "{stage}");
         }
     }
 }

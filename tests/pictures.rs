@@ -150,8 +150,8 @@ fn few_pixels_of_a_round_are_in_doubt() {
         tracer
             .trace(&Scene::builtin(), Stage::Reflection, alpha, &mut image)
             .unwrap();
-        double_double += tracer.in_doubt().double_double;
-        arbitrary += tracer.in_doubt().arbitrary;
+        double_double += tracer.tally().double_double;
+        arbitrary += tracer.tally().arbitrary;
     }
     eprintln!("{double_double} pixels by double-doubles, {arbitrary} by arbitrary precision");
     assert!(double_double + arbitrary <= 20 && arbitrary <= 2);

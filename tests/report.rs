@@ -111,6 +111,11 @@ fn the_json_is_as_promised() {
             .into_iter()
             .find(|kernel| kernel.name() == name)
             .unwrap();
+        // The others go pixel by pixel.
+        let by_rows = [Kernel::Exact, Kernel::Fast, Kernel::Double].contains(&kernel);
+        for key in ["edges_a_row", "spans_a_row"] {
+            assert_eq!(row[key].as_f64().unwrap() > 1.0, by_rows, "{key}: {row}");
+        }
         let (wrong, misrounded) = counted(kernel);
         assert_eq!(
             (&row["wrong_pixels"], &row["misrounded"]),

@@ -3,7 +3,7 @@
 use crate::Image;
 use crate::diagnosis::WrongPixels;
 use crate::difference::Difference;
-use crate::tracer::{Decision, InDoubt};
+use crate::tracer::{Decision, Tally};
 
 /// What a kernel gets wrong over some frames, and how many pixels were in doubt on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,8 +15,8 @@ pub(super) struct Errors {
     /// The difference of the samples of those pixels that are decided rightly: errors of
     /// arithmetic, not of decisions.
     pub(super) decided_rightly: Difference,
-    /// Pixels that cheaper arithmetic left in doubt.
-    pub(super) in_doubt: InDoubt,
+    /// What the frames took.
+    pub(super) tally: Tally,
 }
 
 impl Errors {
@@ -26,7 +26,7 @@ impl Errors {
         &mut self,
         (image, decisions): (&Image, &[Decision]),
         (true_image, true_decisions): (&Image, &[Decision]),
-        in_doubt: InDoubt,
+        tally: Tally,
     ) {
         let pixels = image.samples().chunks_exact(3).zip(decisions);
         let true_pixels = true_image.samples().chunks_exact(3).zip(true_decisions);
@@ -39,8 +39,7 @@ impl Errors {
                 }
             }
         }
-        self.in_doubt.double_double += in_doubt.double_double;
-        self.in_doubt.arbitrary += in_doubt.arbitrary;
+        self.tally = self.tally.and(tally);
     }
 }
 
@@ -61,13 +60,15 @@ mod tests {
         image.samples_mut()[8] = f32::NAN;
         let mut decisions = true_decisions;
         decisions[1] = Decision::Surface;
-        let in_doubt = InDoubt {
+        let tally = Tally {
             double_double: 5,
             arbitrary: 1,
+            edges: 30,
+            spans: 20,
         };
         let mut errors = Errors::default();
         for _ in 0..2 {
-            errors.add((&image, &decisions), (&truth, &true_decisions), in_doubt);
+            errors.add((&image, &decisions), (&truth, &true_decisions), tally);
         }
         // Two frames: everything twice, the largest and the means once.
         assert_eq!(errors.wrong_pixels.total(), 2);
@@ -84,9 +85,6 @@ mod tests {
             (18, 4, 3)
         );
         assert_eq!(rightly.mean_steps(), 3.0 / 8.0);
-        assert_eq!(
-            (errors.in_doubt.double_double, errors.in_doubt.arbitrary),
-            (10, 2)
-        );
+        assert_eq!(errors.tally, tally.and(tally));
     }
 }

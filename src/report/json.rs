@@ -55,6 +55,8 @@ struct JsonRow<'a> {
     eight_bit_differences: Option<u64>,
     pixels_in_doubt: Option<u64>,
     in_doubt_by_rung: Option<Doubt>,
+    edges_a_row: Option<f64>,
+    spans_a_row: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -241,7 +243,7 @@ impl Report {
     ) -> JsonRow<'a> {
         let errors = measured.map(|measured| &measured.errors);
         let wrong = errors.map(|errors| errors.wrong_pixels);
-        let doubt = errors.map(|errors| errors.in_doubt);
+        let tally = errors.map(|errors| errors.tally);
         JsonRow {
             scene: &row.scene,
             stage: row.stage.number(),
@@ -272,11 +274,13 @@ impl Report {
             max_abs: errors.map(|errors| errors.all.max_abs),
             mean_abs: errors.map(|errors| errors.all.mean_abs()),
             eight_bit_differences: errors.map(|errors| errors.all.eight_bit),
-            pixels_in_doubt: doubt.map(|doubt| doubt.double_double + doubt.arbitrary),
-            in_doubt_by_rung: doubt.map(|doubt| Doubt {
-                double_double: doubt.double_double,
-                arbitrary: doubt.arbitrary,
+            pixels_in_doubt: tally.map(|tally| tally.double_double + tally.arbitrary),
+            in_doubt_by_rung: tally.map(|tally| Doubt {
+                double_double: tally.double_double,
+                arbitrary: tally.arbitrary,
             }),
+            edges_a_row: tally.map(|tally| self.per_row(tally.edges)),
+            spans_a_row: tally.map(|tally| self.per_row(tally.spans)),
         }
     }
 }

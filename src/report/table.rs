@@ -17,6 +17,7 @@ impl Report {
             Columns::new("f32 steps", &["largest", "mean"]),
             Columns::new("absolute", &["largest", "mean"]),
             Columns::new("in doubt after", &["f64", "double-double"]),
+            Columns::new("a row", &["edges", "spans"]),
         ]);
         let mut threads = vec![1];
         threads.extend((self.threads > 1).then_some(self.threads));
@@ -31,11 +32,11 @@ impl Report {
             match &row.measured {
                 Ok(measured) => {
                     times.rows.push(self.times(row, measured));
-                    errors.rows.push(errors_of(row, measured));
+                    errors.rows.push(self.errors_of(row, measured));
                 }
                 Err(refusal) => {
                     times.rows.push(refused(row, 5 * threads.len()));
-                    errors.rows.push(refused(row, 13));
+                    errors.rows.push(refused(row, 15));
                     // One reason is enough.
                     reason = format!("refused: {refusal}\n");
                 }
@@ -118,6 +119,22 @@ impl Report {
                 digits(timing.retained_fill_ratio.median),
             ]);
         }
+        cells
+    }
+
+    fn errors_of(&self, row: &Row, Measured { errors, .. }: &Measured) -> Vec<String> {
+        let mut cells = names(row);
+        let wrong = errors.wrong_pixels;
+        let (all, rightly) = (&errors.all, &errors.decided_rightly);
+        cells.extend([wrong.solid, wrong.face, wrong.shadow, wrong.mirror].map(|n| n.to_string()));
+        cells.extend([all.wrong, all.eight_bit, all.nans[0]].map(|n| n.to_string()));
+        cells.extend([rightly.max_steps.to_string(), digits(rightly.mean_steps())]);
+        cells.extend([digits(all.max_abs), digits(all.mean_abs())]);
+        // A rung leaves in doubt what the next ones settle.
+        let tally = errors.tally;
+        let doubt = [tally.double_double + tally.arbitrary, tally.arbitrary];
+        cells.extend(doubt.map(|n| n.to_string()));
+        cells.extend([tally.edges, tally.spans].map(|n| digits(self.per_row(n))));
         cells
     }
 
@@ -277,20 +294,6 @@ fn refused(row: &Row, columns: usize) -> Vec<String> {
     let mut cells = names(row);
     cells.push("refused".to_owned());
     cells.extend(vec!["–".to_owned(); columns - 1]);
-    cells
-}
-
-fn errors_of(row: &Row, Measured { errors, .. }: &Measured) -> Vec<String> {
-    let mut cells = names(row);
-    let wrong = errors.wrong_pixels;
-    let (all, rightly) = (&errors.all, &errors.decided_rightly);
-    cells.extend([wrong.solid, wrong.face, wrong.shadow, wrong.mirror].map(|n| n.to_string()));
-    cells.extend([all.wrong, all.eight_bit, all.nans[0]].map(|n| n.to_string()));
-    cells.extend([rightly.max_steps.to_string(), digits(rightly.mean_steps())]);
-    cells.extend([digits(all.max_abs), digits(all.mean_abs())]);
-    // A rung leaves in doubt what the next ones settle.
-    let doubt = errors.in_doubt;
-    cells.extend([doubt.double_double + doubt.arbitrary, doubt.arbitrary].map(|n| n.to_string()));
     cells
 }
 

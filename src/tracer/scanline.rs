@@ -81,10 +81,10 @@ use fearless_simd::Level;
 
 use super::arena::Arena;
 use super::decision::Decision;
-use super::in_doubt::InDoubt;
 use super::ladder::RowPixels;
 use super::pixel::quadrant;
 use super::progress::Progress;
+use super::tally::Tally;
 use active::ActiveEdges;
 use grid::Columns;
 pub(super) use grid::ROWS;
@@ -153,8 +153,8 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch.shader.begin(self.frame.shaded_spheres);
     }
 
-    /// Traces neighbouring rows into their samples and, if given, decisions. Returns how many
-    /// pixels were in doubt. `scratch` must be prepared for the frame. `history`, if given, must
+    /// Traces neighbouring rows into their samples and, if given, decisions. Returns what
+    /// they took. `scratch` must be prepared for the frame. `history`, if given, must
     /// tell what `samples` show; then only differences are written.
     pub(super) fn trace(
         &self,
@@ -164,7 +164,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         history: Option<&mut [RowHistory]>,
         scratch: &mut Scratch,
         progress: &Progress,
-    ) -> InDoubt {
+    ) -> Tally {
         let mut row = Row {
             level: self.level,
             precision: self.precision,
@@ -176,7 +176,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             decisions,
             history,
             pending: None,
-            in_doubt: InDoubt::default(),
+            tally: Tally::default(),
         };
         let mut traced = 0;
         for number in rows {
@@ -207,6 +207,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             if columns.0 < columns.1 {
                 let paint = quadrants[usize::from(quadrant(columns.0, row.number, size))];
                 row.fill(columns, &self.frame.paints[paint]);
+                row.tally.spans += 1;
             }
         }
     }
@@ -231,6 +232,8 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             frame.grid,
             resolve,
         );
+        row.tally.edges += active.edge_count() as u64;
+        row.tally.spans += active.len() as u64;
         let mut from = 0;
         for span in 0..active.len() {
             let (to, visible) = active.span(span, row.number);

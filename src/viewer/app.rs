@@ -12,7 +12,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::ModifiersState;
 
 use crate::screen::driver_limits;
-use crate::tracer::InDoubt;
+use crate::tracer::Tally;
 use crate::{Image, Render, RenderError, Scene, Stage};
 
 use super::clipboard::Clipboard;
@@ -469,7 +469,7 @@ impl App<'_> {
                             number: 0,
                             changed: 0..self.size,
                             time: Duration::ZERO,
-                            in_doubt: InDoubt::default(),
+                            tally: Tally::default(),
                         },
                         Arc::new(Image::new(self.size)?),
                         Instant::now(),

@@ -259,7 +259,7 @@ mod tests {
 
     use super::*;
     use crate::random::Random;
-    use crate::tracer::InDoubt;
+    use crate::tracer::Tally;
     use crate::viewer::renderer::Renderer;
     use crate::{Scene, Stage};
 
@@ -277,7 +277,7 @@ mod tests {
             number,
             changed,
             time: Duration::ZERO,
-            in_doubt: InDoubt::default(),
+            tally: Tally::default(),
         }
     }
 

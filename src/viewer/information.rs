@@ -20,8 +20,8 @@ pub(super) struct Times {
 }
 
 /// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many
-/// frames a second could be traced, and how many are displayed; the pixels in doubt. Lines of a
-/// name and a value.
+/// frames a second could be traced, and how many are displayed; the pixels in doubt, and the parts of a
+/// row. Lines of a name and a value.
 pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
     let frame = &traced.frame;
     let ms = |time: Duration| format!("{:.2} ms", 1e3 * time.as_secs_f64());
@@ -30,11 +30,17 @@ pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
         Some(rate) => format!("{rate:.0} fps"),
         None => "still".to_owned(),
     };
-    let in_doubt = traced.in_doubt;
+    let tally = traced.tally;
     let doubts = format!(
         "{} after f64, {} after double-doubles",
-        in_doubt.double_double + in_doubt.arbitrary,
-        in_doubt.arbitrary
+        tally.double_double + tally.arbitrary,
+        tally.arbitrary
+    );
+    let a_row = |count: u64| count as f64 / f64::from(size.max(1));
+    let parts = format!(
+        "{:.1} edges, {:.1} spans",
+        a_row(tally.edges),
+        a_row(tally.spans)
     );
     let kind = match frame.renderer {
         Renderer::Kernel(_) => "kernel",
@@ -51,9 +57,11 @@ pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
         ("total", ms(traced.time + times.upload + times.draw)),
         ("display", display),
         ("in doubt", doubts),
+        ("a row", parts),
     ];
-    // A renderer that was given knows no doubt that is known here.
-    let known = |(name, _): &(&str, String)| kind == "kernel" || *name != "in doubt";
+    // How a renderer that was given works is not known here.
+    let known =
+        |(name, _): &(&str, String)| kind == "kernel" || !["in doubt", "a row"].contains(name);
     lines
         .into_iter()
         .filter(known)

@@ -10,7 +10,7 @@ use glam::UVec2;
 
 use crate::diagnosis::{Examination, TOLERANCE};
 use crate::image::{Format, SaveError};
-use crate::tracer::{InDoubt, Progress, TraceError};
+use crate::tracer::{Progress, Tally, TraceError};
 use crate::{Image, Kernel, Render, RenderError, Scene, Stage, Tracer};
 
 use super::renderer::Renderer;
@@ -59,7 +59,7 @@ pub(super) struct Traced {
     pub(super) changed: Range<u32>,
     /// How long it took.
     pub(super) time: Duration,
-    pub(super) in_doubt: InDoubt,
+    pub(super) tally: Tally,
 }
 
 /// What a thread is asked for.
@@ -120,7 +120,7 @@ enum Engine {
 }
 
 /// The rows that were written, and the pixels that were in doubt.
-type Written = (Range<u32>, InDoubt);
+type Written = (Range<u32>, Tally);
 
 impl Engine {
     /// Makes the picture of `frame` in `image`; where nobody else holds the last picture, that is
@@ -139,7 +139,7 @@ impl Engine {
                 choose(tracer, kernel_of(renderer), *threads)?;
                 *lock(progress) = tracer.progress();
                 let rows = tracer.retrace(scene, stage, alpha, image)?;
-                Ok((rows, tracer.in_doubt()))
+                Ok((rows, tracer.tally()))
             }
             (Engine::Given { renderer, edition }, wanted) => {
                 if let Renderer::Given(given) = wanted
@@ -150,7 +150,7 @@ impl Engine {
                 }
                 let rendered = renderer.render(scene, stage, alpha, image);
                 rendered.map_err(Failure::Refused)?;
-                Ok((0..image.size(), InDoubt::default()))
+                Ok((0..image.size(), Tally::default()))
             }
         }
     }
@@ -242,18 +242,18 @@ impl Pictures {
         // Over another picture than its last one, the tracer writes all rows.
         let written = match Arc::get_mut(&mut image) {
             Some(image) => self.engine.render(frame, image),
-            None => Ok((0..0, InDoubt::default())),
+            None => Ok((0..0, Tally::default())),
         };
         let time = start.elapsed();
         self.pool.push(image.clone());
-        let (changed, in_doubt) = written?;
+        let (changed, tally) = written?;
         self.number += 1;
         let traced = Traced {
             frame: frame.clone(),
             number: self.number,
             changed,
             time,
-            in_doubt,
+            tally,
         };
         self.last = Some(traced.clone());
         Ok((traced, image))

@@ -173,6 +173,11 @@ impl ActiveEdges {
         }
     }
 
+    /// The number of edges that cross the row.
+    pub(crate) fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
     /// The number of spans of the row.
     pub(crate) fn len(&self) -> usize {
         self.spans.len() - 1

@@ -5,12 +5,12 @@ use std::ops::Range;
 use fearless_simd::{Level, dispatch};
 
 use crate::tracer::decision::Decision;
-use crate::tracer::in_doubt::InDoubt;
 use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::policy::Precision;
 use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
+use crate::tracer::tally::Tally;
 
 /// A row that is being written, one of several neighbours.
 pub(crate) struct Row<'r> {
@@ -31,7 +31,7 @@ pub(crate) struct Row<'r> {
     /// Pixels that are still to be filled: the end of a row and the beginning of the next mostly
     /// show one paint, and lie side by side.
     pub(crate) pending: Option<(Range<usize>, &'r Paint)>,
-    pub(crate) in_doubt: InDoubt,
+    pub(crate) tally: Tally,
 }
 
 impl<'r> Row<'r> {
@@ -100,9 +100,9 @@ impl<'r> Row<'r> {
     }
 
     /// Ends the last row. Returns how many pixels were in doubt.
-    pub(crate) fn finish_all(mut self) -> InDoubt {
+    pub(crate) fn finish_all(mut self) -> Tally {
         self.write_pending();
-        self.in_doubt
+        self.tally
     }
 
     /// Decides each pixel by itself.
@@ -115,7 +115,7 @@ impl<'r> Row<'r> {
             if let Some(decisions) = &mut self.decisions {
                 decisions[index] = decision;
             }
-            self.in_doubt.count(rung);
+            self.tally.count(rung);
         }
     }
 }
