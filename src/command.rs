@@ -7,6 +7,7 @@ mod explain;
 mod maker;
 mod report;
 mod round_trip;
+mod streams;
 mod view;
 mod watchdog;
 
@@ -25,6 +26,8 @@ use firsthit::scene::{BUILTIN_TOML, SceneFileError};
 use firsthit::screen::ScreenError;
 use firsthit::tracer::TraceError;
 use firsthit::viewer::ViewerError;
+
+use streams::print;
 
 /// Traces a scene of solids on a glazed surface, and shows it in a window or writes it to files.
 ///
@@ -108,7 +111,11 @@ pub(crate) enum Failure {
 
 /// Does what the words of a command line say, of which the first is the program's name.
 pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let line = CommandLine::try_parse_from(words)?;
+    let line = match CommandLine::try_parse_from(words) {
+        // Help and version come this way too.
+        Err(answer) if !answer.use_stderr() => return print(&answer.render().to_string()),
+        line => line?,
+    };
     match line.command.unwrap_or(Command::View(line.view)) {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
@@ -131,20 +138,6 @@ pub(crate) fn say(message: &str) {
     }
     line.push('\n');
     let _ = io::stderr().write_all(line.as_bytes());
-}
-
-fn print(text: &str) -> Result<(), Failure> {
-    let mut output = io::stdout().lock();
-    match output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.flush())
-    {
-        // Who closes a pipe has read enough.
-        Err(reason) if reason.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::StandardOutput(reason))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Wrong usage, with the usage of the command that has the arguments `A` below the message.

@@ -20,11 +20,10 @@ fn main() -> ExitCode {
     program::end_all();
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Usage(answer)) => {
+        Err(Failure::Usage(error)) => {
             // Where nobody listens any more there is nothing to be done about it.
-            let _ = answer.print();
-            // Help and version come this way too.
-            ExitCode::from(if answer.use_stderr() { 2 } else { 0 })
+            let _ = error.print();
+            ExitCode::from(2)
         }
         Err(failure) => {
             command::say(&failure.to_string());

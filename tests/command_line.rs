@@ -467,15 +467,17 @@ fn a_pipe_that_is_closed_is_no_failure() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_standard_output_that_is_full_is_a_failure() {
-    let output = program(&folder(), "scene")
-        .stdout(File::create("/dev/full").unwrap())
-        .output()
-        .unwrap();
-    let message = failed(&output, "scene");
-    assert!(
-        message.contains("standard output cannot be written"),
-        "{message}"
-    );
+    for line in ["scene", "--help", "capture --help", "--version"] {
+        let output = program(&folder(), line)
+            .stdout(File::create("/dev/full").unwrap())
+            .output()
+            .unwrap();
+        let message = failed(&output, line);
+        assert!(
+            message.contains("standard output cannot be written"),
+            "{message}"
+        );
+    }
 }
 
 #[cfg(target_os = "linux")]
