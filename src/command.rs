@@ -90,6 +90,15 @@ pub(crate) enum Failure {
         b: PathBuf,
         reason: SizesDiffer,
     },
+    #[error(
+        "{} and {}: neither has a layer {layer}, nor any with a name: leave out --layer",
+        a.display(), b.display()
+    )]
+    NoLayers {
+        a: PathBuf,
+        b: PathBuf,
+        layer: String,
+    },
     #[error(transparent)]
     Heat(#[from] HeatError),
     #[error(

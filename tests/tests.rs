@@ -25,6 +25,8 @@ mod doubt;
 mod drivers;
 #[cfg(feature = "program")]
 mod explain;
+#[cfg(feature = "program")]
+mod foreign_pictures;
 mod fuzz;
 mod helpers;
 mod hints;

@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use firsthit::Image;
 use firsthit::difference::{Difference, save_heat};
-use firsthit::image::{Format, LoadError};
+use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
 
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
@@ -17,6 +16,10 @@ pub(crate) struct Arguments {
     a: PathBuf,
     /// The picture to compare it with, of the same size
     b: PathBuf,
+    /// The layer to read of an .exr that has several: what its channels' names begin with, or the
+    /// name of its part; the first if not given
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
@@ -32,17 +35,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("{}: a false-colour picture is a .png", path.display());
         return Err(wrong::<Arguments>("firsthit compare", message).into());
     }
-    let (a, b) = (load(&arguments.a)?, load(&arguments.b)?);
+    let options = LoadOptions {
+        layer: arguments.layer.clone(),
+    };
+    let (a, b) = (load(&arguments.a, &options)?, load(&arguments.b, &options)?);
+    if let Some(layer) = &arguments.layer
+        && a.layer.is_empty()
+        && b.layer.is_empty()
+    {
+        return Err(Failure::NoLayers {
+            a: arguments.a.clone(),
+            b: arguments.b.clone(),
+            layer: layer.clone(),
+        });
+    }
     let sizes = |reason| Failure::Sizes {
         a: arguments.a.clone(),
         b: arguments.b.clone(),
         reason,
     };
-    let difference = Difference::of(&a, &b).map_err(sizes)?;
+    let difference = Difference::of(&a.image, &b.image).map_err(sizes)?;
     if let Some(path) = &arguments.output {
-        save_heat(&a, &b, path)?;
+        save_heat(&a.image, &b.image, path)?;
     }
-    print(&text(arguments, a.size(), &difference))?;
+    print(&text(arguments, [&a, &b], &difference))?;
     match arguments.threshold {
         Some(threshold)
             if difference.max_steps > threshold || difference.nan_against_number > 0 =>
@@ -59,7 +75,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn text(arguments: &Arguments, size: u32, difference: &Difference) -> String {
+fn text(arguments: &Arguments, pictures: [&LoadedImage; 2], difference: &Difference) -> String {
+    let size = pictures[0].image.size();
     let Difference {
         samples,
         wrong,
@@ -88,7 +105,23 @@ fn text(arguments: &Arguments, size: u32, difference: &Difference) -> String {
             ratio => format!("{ratio:.2} dB for a peak of 1"),
         },
     );
-    for path in [&arguments.a, &arguments.b] {
+    for (path, picture) in [&arguments.a, &arguments.b].into_iter().zip(pictures) {
+        if !picture.other_layers.is_empty() {
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "note               {}: {} is read of {} layers: --layer chooses another: {}",
+                path.display(),
+                layer_name(&picture.layer),
+                1 + picture.other_layers.len(),
+                picture
+                    .other_layers
+                    .iter()
+                    .map(|name| layer_name(name))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            );
+        }
         if let Ok(Format::Png) = Format::of(path) {
             // Writing to a string cannot fail.
             let _ = writeln!(
@@ -101,7 +134,15 @@ fn text(arguments: &Arguments, size: u32, difference: &Difference) -> String {
     text
 }
 
-fn load(path: &Path) -> Result<Image, LoadError> {
+fn layer_name(name: &str) -> &str {
+    if name.is_empty() {
+        "the nameless layer"
+    } else {
+        name
+    }
+}
+
+fn load(path: &Path, options: &LoadOptions) -> Result<LoadedImage, LoadError> {
     let _watchdog = Watchdog::for_input(path);
-    Image::load(path)
+    Image::load_with(path, options)
 }

@@ -2,6 +2,7 @@
 //! for.
 
 mod exr;
+mod layers;
 mod png;
 
 use std::fs::File;
@@ -37,6 +38,24 @@ pub enum LoadError {
         /// What is wrong with it.
         reason: String,
     },
+    /// It is an EXR, and no three of its channels are red, green and blue.
+    #[error("{}: has no red, green and blue, but the channels {channels}: name three of them R, G and B", path.display())]
+    NoColor {
+        /// The file.
+        path: PathBuf,
+        /// The names of its channels, of the first ones where there are many.
+        channels: String,
+    },
+    /// It is an EXR without the layer that was asked for.
+    #[error("{}: has no layer {layer}: choose one of {layers}", path.display())]
+    NoLayer {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        layer: String,
+        /// The names of its layers, of the first ones where there are many.
+        layers: String,
+    },
     /// It is an EXR whose compression is not read here: of a damaged file, its decoder could
     /// overflow or take all memory.
     #[error("{}: {compression} is not read: convert it to zip compression", path.display())]
@@ -69,28 +88,73 @@ pub enum LoadError {
     },
 }
 
+/// What is chosen where a file leaves a choice.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// The layer to read: what the names of its channels begin with, or the name of its part. `None`
+    /// is the first layer of channels that are named by a letter alone, else the first layer. A
+    /// file whose only layer has no name, as a PNG's, leaves no choice.
+    pub layer: Option<String>,
+}
+
+/// A picture, and what its file says of it.
+#[derive(Debug)]
+pub struct LoadedImage {
+    /// The picture.
+    pub image: Image,
+    /// The name of its layer; empty where the file gives it none.
+    pub layer: String,
+    /// The names of the file's other layers of red, green and blue.
+    pub other_layers: Vec<String>,
+}
+
+impl LoadedImage {
+    /// What a file holds that can hold nothing else.
+    fn only(image: Image) -> LoadedImage {
+        LoadedImage {
+            image,
+            layer: String::new(),
+            other_layers: Vec::new(),
+        }
+    }
+}
+
 impl Image {
-    /// Reads `path`: the channels R, G and B of an `.exr`, every 32-bit float bit for bit; or a
-    /// `.png`, where a sample is the byte / 255 (of a PNG of 16 bits: the number / 65535),
-    /// rounded to f32.
+    /// Reads `path` as [`Image::load_with`] does, with no choice made.
+    ///
+    /// # Errors
+    /// As [`Image::load_with`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Image, LoadError> {
+        Image::load_with(path, &LoadOptions::default()).map(|loaded| loaded.image)
+    }
+
+    /// Reads `path`: red, green and blue of an `.exr`, every 32-bit float bit for bit, from channels
+    /// named R, G, B or r, g, b, alone or behind a layer's name and a dot; or a `.png`, where a
+    /// sample is the byte / 255 (of a PNG of 16 bits: the number / 65535), rounded to f32.
     ///
     /// # Errors
     /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture
-    /// that is as wide as high and opaque, or it is an EXR compressed by B44 or DWA.
-    pub fn load(path: impl AsRef<Path>) -> Result<Image, LoadError> {
+    /// that is as wide as high and opaque, or it is an EXR compressed by B44 or DWA, or an EXR
+    /// without that layer.
+    pub fn load_with(
+        path: impl AsRef<Path>,
+        options: &LoadOptions,
+    ) -> Result<LoadedImage, LoadError> {
         let path = path.as_ref();
         let format = Format::of(path).map_err(|_| LoadError::Extension(path.to_owned()))?;
-        let read = match format {
-            Format::Exr => exr::read,
-            Format::Png => png::read,
-            Format::Apng => return Err(LoadError::Extension(path.to_owned())),
-        };
+        if format == Format::Apng {
+            return Err(LoadError::Extension(path.to_owned()));
+        }
         let unreadable = |reason| LoadError::Unreadable {
             path: path.to_owned(),
             reason,
         };
         let file = BufReader::new(File::open(path).map_err(unreadable)?);
-        read(file).map_err(|problem| match problem {
+        let read = match format {
+            Format::Exr => exr::read(file, options),
+            _ => png::read(file).map(LoadedImage::only),
+        };
+        read.map_err(|problem| match problem {
             Problem::Io(reason) => unreadable(reason),
             Problem::Damaged(reason) => LoadError::Damaged {
                 path: path.to_owned(),
@@ -100,6 +164,15 @@ impl Image {
             Problem::Compression(compression) => LoadError::Compression {
                 path: path.to_owned(),
                 compression: compression.to_string(),
+            },
+            Problem::NoColor(channels) => LoadError::NoColor {
+                path: path.to_owned(),
+                channels,
+            },
+            Problem::NoLayer(layer, layers) => LoadError::NoLayer {
+                path: path.to_owned(),
+                layer,
+                layers,
             },
             Problem::NotSquare(width, height) => LoadError::NotSquare {
                 path: path.to_owned(),
@@ -120,6 +193,10 @@ enum Problem {
     Io(io::Error),
     Damaged(String),
     Compression(Compression),
+    /// What there is instead.
+    NoColor(String),
+    /// What was asked for, and what there is.
+    NoLayer(String, String),
     NotSquare(usize, usize),
     Transparent,
     Image(ImageError),

@@ -3,15 +3,18 @@
 use std::fs::File;
 use std::io::BufReader;
 
+use ::exr::block::UncompressedBlock;
+use ::exr::block::reader::ChunksReader;
 use ::exr::compression::Compression;
 use ::exr::error::Error;
-use ::exr::image::read::image::ReadLayers;
-use ::exr::image::read::layers::ReadChannels;
 use ::exr::math::Vec2;
 use ::exr::meta::BlockDescription;
+use ::exr::meta::attribute::SampleType;
 use ::exr::meta::header::Header;
+use ::exr::prelude::f16;
 
-use super::{Problem, side, square};
+use super::layers::{self, Layer, Role};
+use super::{LoadOptions, LoadedImage, Problem, side, square};
 use crate::image::{Image, MAX_SIZE};
 
 impl From<Error> for Problem {
@@ -55,32 +58,63 @@ fn check_part(part: &Header) -> Result<(), Problem> {
     }
 }
 
-pub(super) fn read(file: BufReader<File>) -> Result<Image, Problem> {
+pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<LoadedImage, Problem> {
     let file = ::exr::block::read(file, false)?;
-    let channels = ["R", "G", "B"];
-    let has = |part: &Header, name| part.channels.list.iter().any(|own| own.name.eq(name));
-    // The first that has them is the one that is read.
-    let mut parts = file.headers().iter();
-    if let Some(part) = parts.find(|part| channels.iter().all(|name| has(part, name))) {
-        check_part(part)?;
+    let (layer, other_layers) = layers::choose(file.headers(), options.layer.as_deref())?;
+    let header = &file.headers()[layer.part];
+    check_part(header)?;
+    let mut image = square(header.layer_size.width(), header.layer_size.height())?;
+    let chunks = file.filter_chunks(false, |_, tile, block| {
+        block.layer == layer.part && tile.is_largest_resolution_level()
+    })?;
+    let parts = chunks.meta_data().clone();
+    for chunk in chunks {
+        let chunk = chunk?;
+        // Only this part has been checked.
+        if chunk.layer_index != layer.part {
+            return Err(wrong_block());
+        }
+        let block = UncompressedBlock::decompress_chunk(chunk, &parts, false)?;
+        if block.index.level != Vec2(0, 0) {
+            return Err(wrong_block());
+        }
+        copy(&block, &parts.headers[layer.part], &layer, &mut image);
     }
-    ::exr::image::read::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgb_channels(
-            |Vec2(width, height), _| square(width, height),
-            |image, Vec2(column, row_from_top), (red, green, blue): (f32, f32, f32)| {
-                if let Ok(image) = image {
-                    let size = image.size() as usize;
-                    let first = ((size - 1 - row_from_top) * size + column) * 3;
-                    image.samples_mut()[first..first + 3].copy_from_slice(&[red, green, blue]);
-                }
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_chunks(file)?
-        .layer_data
-        .channel_data
-        .pixels
+    Ok(LoadedImage {
+        image,
+        layer: layer.name,
+        other_layers,
+    })
+}
+
+fn wrong_block() -> Problem {
+    Problem::Damaged("its table of blocks names one of another picture".to_owned())
+}
+
+/// Copies the layer's samples of a block to where they are in the picture.
+fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut Image) {
+    let size = image.size() as usize;
+    for line in block.lines(&header.channels) {
+        let Some(Role::Color(color)) = layer.role(line.location.channel) else {
+            continue;
+        };
+        let kind = header.channels.list[line.location.channel].sample_type;
+        let Vec2(first, row_from_top) = line.location.position;
+        let start = (size - 1 - row_from_top) * size + first;
+        let pixels = image.samples_mut()[3 * start..].chunks_exact_mut(3);
+        for (pixel, sample) in pixels.zip(samples(line.value, kind)) {
+            pixel[color] = sample;
+        }
+    }
+}
+
+/// The numbers of a decompressed line, which are as this machine has them.
+fn samples(line: &[u8], kind: SampleType) -> impl Iterator<Item = f32> {
+    line.chunks_exact(kind.bytes_per_sample())
+        .map(move |bytes| match (kind, bytes) {
+            (SampleType::F16, &[a, b]) => f16::from_ne_bytes([a, b]).to_f32(),
+            (SampleType::U32, &[a, b, c, d]) => u32::from_ne_bytes([a, b, c, d]) as f32,
+            (_, &[a, b, c, d]) => f32::from_ne_bytes([a, b, c, d]),
+            _ => f32::NAN,
+        })
 }

@@ -1,0 +1,179 @@
+//! Promise: `firsthit compare` reads other programs' pictures as they mean them, or says in one
+//! line what it does not read.
+
+use std::fs;
+use std::path::Path;
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image as File, ImageAttributes,
+    IntegerBounds, Layer as Part, LayerAttributes, SmallVec, Vec2, WritableImage,
+};
+use firsthit::Image;
+use tempfile::TempDir;
+
+use crate::helpers::{self, printed, program};
+
+/// A part of an EXR of 2 × 2 pixels: its name, and its channels, each of one value.
+type Channels<'a> = (&'a str, &'a [(&'a str, f32)]);
+
+/// A part with its data window's upper left pixel there.
+fn part((name, channels): Channels<'_>, corner: [i32; 2]) -> Part<AnyChannels<FlatSamples>> {
+    let channels = channels
+        .iter()
+        .map(|&(name, value)| AnyChannel::new(name, FlatSamples::F32(vec![value; 4])));
+    let channels: SmallVec<[_; 4]> = channels.collect();
+    let attributes = match name {
+        "" => LayerAttributes::default(),
+        name => LayerAttributes::named(name),
+    };
+    let attributes = attributes.with_position(Vec2(corner[0], corner[1]));
+    let encoding = Encoding::FAST_LOSSLESS;
+    Part::new((2, 2), attributes, encoding, AnyChannels::sort(channels))
+}
+
+/// Writes an EXR of those parts.
+fn write_exr(folder: &TempDir, name: &str, parts: &[Channels<'_>]) {
+    let parts: SmallVec<[_; 2]> = parts
+        .iter()
+        .map(|&channels| part(channels, [0, 0]))
+        .collect();
+    write_parts(&folder.path().join(name), parts);
+}
+
+fn write_parts(path: &Path, parts: SmallVec<[Part<AnyChannels<FlatSamples>>; 2]>) {
+    let window = IntegerBounds::from_dimensions((2, 2));
+    let file = File::from_layers(ImageAttributes::new(window), parts);
+    file.write().to_file(path).unwrap();
+}
+
+/// Writes an EXR of the program's own, each pixel of this colour.
+fn write_own(folder: &TempDir, name: &str, color: [f32; 3]) {
+    let mut image = Image::new(2).unwrap();
+    for pixel in image.samples_mut().chunks_exact_mut(3) {
+        pixel.copy_from_slice(&color);
+    }
+    image.save(folder.path().join(name)).unwrap();
+}
+
+/// What the program printed; it must have found the pictures equal.
+fn equal(folder: &TempDir, line: &str) -> String {
+    let text = printed(folder, &format!("compare {line} --threshold 0"));
+    assert!(text.contains("0 of 12 (0.000 %)"), "{line}: {text}");
+    text
+}
+
+/// What the program said when it refused to compare.
+fn refused(folder: &TempDir, line: &str) -> String {
+    let output = program(folder, &format!("compare {line}"))
+        .output()
+        .unwrap();
+    assert_eq!(output.stdout, b"", "{line}");
+    helpers::failed(&output, 1, line)
+}
+
+const COLOR: [f32; 3] = [0.25, 0.5, 4.0];
+
+#[test]
+fn red_green_and_blue_are_found_by_each_usual_name() {
+    let folder = tempfile::tempdir().unwrap();
+    write_own(&folder, "own.exr", COLOR);
+    let [red, green, blue] = COLOR;
+    for names in [
+        ["R", "G", "B"],
+        ["r", "g", "b"],
+        [".R", ".G", ".B"],
+        ["View.Combined.R", "View.Combined.G", "View.Combined.B"],
+        ["rgba.r", "rgba.g", "rgba.b"],
+    ] {
+        let [r, g, b] = names;
+        // Others stand between them in the order of the alphabet.
+        let channels = [
+            (r, red),
+            (g, green),
+            (b, blue),
+            ("D", 9.0),
+            ("Z", 9.0),
+            ("a.R", 9.0),
+        ];
+        write_exr(&folder, "other.exr", &[("", &channels)]);
+        let text = equal(&folder, "other.exr own.exr");
+        assert!(!text.contains("note"), "{text}");
+    }
+    let channels = [("R", red), ("G", green), ("b", blue), ("xB", 1.0)];
+    write_exr(&folder, "other.exr", &[("", &channels)]);
+    let said = refused(&folder, "other.exr own.exr");
+    let expected = "other.exr: has no red, green and blue, but the channels G, R, b, xB: name";
+    assert!(said.contains(expected), "{said}");
+}
+
+#[test]
+fn of_several_layers_the_one_read_is_named_and_another_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    write_own(&folder, "own.exr", COLOR);
+    let [red, green, blue] = COLOR;
+    let layers = [
+        ("beauty.R", red),
+        ("beauty.G", green),
+        ("beauty.B", blue),
+        ("direct.R", 1.0),
+        ("direct.G", green),
+        ("direct.B", blue),
+    ];
+    write_exr(&folder, "layers.exr", &[("", &layers)]);
+    let text = equal(&folder, "layers.exr own.exr");
+    let note = "note               layers.exr: beauty is read of 2 layers: --layer chooses another: direct\n";
+    assert!(text.ends_with(note), "{text}");
+    equal(&folder, "own.exr layers.exr --layer beauty");
+    let text = printed(&folder, "compare layers.exr own.exr --layer direct");
+    assert!(text.contains("4 of 12"), "{text}");
+    let said = refused(&folder, "own.exr layers.exr --layer depth");
+    let expected = "firsthit: layers.exr: has no layer depth: choose one of beauty, direct\n";
+    assert_eq!(said, expected);
+    let said = refused(&folder, "own.exr own.exr --layer beauty");
+    assert!(said.contains("neither has a layer beauty"), "{said}");
+}
+
+#[test]
+fn of_several_parts_that_of_plain_channels_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    write_own(&folder, "own.exr", COLOR);
+    let [red, green, blue] = COLOR;
+    let plain: Channels<'_> = ("beauty", &[("R", red), ("G", green), ("B", blue)]);
+    let glossy: Channels<'_> = (
+        "light",
+        &[("glossy.R", 1.0), ("glossy.G", 2.0), ("glossy.B", 3.0)],
+    );
+    write_exr(
+        &folder,
+        "parts.exr",
+        &[("depth", &[("Z", 1.0)]), glossy, plain],
+    );
+    let text = equal(&folder, "parts.exr own.exr");
+    let note = "parts.exr: beauty is read of 2 layers: --layer chooses another: glossy\n";
+    assert!(text.ends_with(note), "{text}");
+    write_own(&folder, "glossy.exr", [1.0, 2.0, 3.0]);
+    for name in ["glossy", "light"] {
+        equal(&folder, &format!("parts.exr glossy.exr --layer {name}"));
+    }
+}
+
+/// The table of the first part names the second one's block, of a compression that is not read.
+#[test]
+fn a_part_is_not_read_out_of_another_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("crafted.exr");
+    let color = [("R", 1.0), ("G", 1.0), ("B", 1.0)];
+    let mut parts = ["one", "two"].map(|name| part((name, &color), [0, 0]));
+    parts[1].encoding.compression = Compression::B44;
+    write_parts(&path, parts.into_iter().collect());
+    let mut file = fs::read(&path).unwrap();
+    let number = |file: &[u8], at: usize| u64::from_le_bytes(file[at..at + 8].try_into().unwrap());
+    // The tables, of one place each, end where the first block begins.
+    let is_table = |&at: &usize| number(&file, at) == at as u64 + 16;
+    let table = (0..file.len() - 16).find(is_table).unwrap();
+    file.copy_within(table + 8..table + 16, table);
+    fs::write(&path, file).unwrap();
+    let said = refused(&folder, "crafted.exr crafted.exr");
+    let expected = "its table of blocks names one of another picture";
+    assert!(said.contains(expected), "{said}");
+}
