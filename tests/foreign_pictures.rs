@@ -177,3 +177,47 @@ fn a_part_is_not_read_out_of_another_one() {
     let expected = "its table of blocks names one of another picture";
     assert!(said.contains(expected), "{said}");
 }
+
+#[test]
+fn what_is_not_opaque_is_refused_unless_its_alpha_is_to_be_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    write_own(&folder, "own.exr", COLOR);
+    let [red, green, blue] = COLOR;
+    let color = [("R", red), ("G", green), ("B", blue)];
+    for (alpha, opaque) in [
+        (("A", 1.0), true),
+        (("A", 0.5), false),
+        (("A", 1.0_f32.next_down()), false),
+        (("A", f32::NAN), false),
+        (("other.A", 0.5), true),
+    ] {
+        let channels = [&color[..], &[alpha]].concat();
+        write_exr(&folder, "glass.exr", &[("", &channels)]);
+        if opaque {
+            equal(&folder, "glass.exr own.exr");
+            continue;
+        }
+        let said = refused(&folder, "glass.exr own.exr");
+        let expected = "firsthit: glass.exr: some pixels are transparent: give an opaque picture, or ignore its alpha (--ignore-alpha)\n";
+        assert_eq!(said, expected);
+        equal(&folder, "glass.exr own.exr --ignore-alpha");
+    }
+    let layer = ["r", "g", "b", "a"].map(|letter| format!("rgba.{letter}"));
+    let [r, g, b, a] = &layer;
+    let layer: [(&str, f32); 4] = [(r, red), (g, green), (b, blue), (a, 0.0)];
+    write_exr(&folder, "glass.exr", &[("", &layer)]);
+    refused(&folder, "own.exr glass.exr");
+
+    let image = Image::load(folder.path().join("own.exr")).unwrap();
+    image.save(folder.path().join("own.png")).unwrap();
+    let path = folder.path().join("glass.png");
+    let mut encoder = png::Encoder::new(fs::File::create(path).unwrap(), 2, 2);
+    encoder.set_color(png::ColorType::Rgba);
+    let mut writer = encoder.write_header().unwrap();
+    writer
+        .write_image_data(&[64, 128, 255, 3].repeat(4))
+        .unwrap();
+    writer.finish().unwrap();
+    refused(&folder, "own.png glass.png");
+    equal(&folder, "own.png glass.png --ignore-alpha");
+}

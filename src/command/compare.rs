@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// name of its part; the first if not given
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
+    /// Compare colours as they are stored where pixels are not opaque, which is refused otherwise
+    #[arg(long)]
+    ignore_alpha: bool,
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
@@ -37,6 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let options = LoadOptions {
         layer: arguments.layer.clone(),
+        ignore_alpha: arguments.ignore_alpha,
     };
     let (a, b) = (load(&arguments.a, &options)?, load(&arguments.b, &options)?);
     if let Some(layer) = &arguments.layer

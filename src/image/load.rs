@@ -75,8 +75,9 @@ pub enum LoadError {
         /// Its rows.
         height: usize,
     },
-    /// Some of its pixels are not opaque, so that their colours depend on what is behind.
-    #[error("{}: some pixels are transparent: give an opaque picture", .0.display())]
+    /// Some of its pixels are not opaque, so that their colours depend on what is behind: their
+    /// alpha is not 1, or the largest whole number.
+    #[error("{}: some pixels are transparent: give an opaque picture, or ignore its alpha (--ignore-alpha)", .0.display())]
     Transparent(PathBuf),
     /// It is larger than any picture here, or than the memory.
     #[error("{}: {reason}", path.display())]
@@ -95,6 +96,9 @@ pub struct LoadOptions {
     /// is the first layer of channels that are named by a letter alone, else the first layer. A
     /// file whose only layer has no name, as a PNG's, leaves no choice.
     pub layer: Option<String>,
+    /// Whether colours are read as they are stored where pixels are not opaque: multiplied by alpha
+    /// in an EXR, not so in a PNG.
+    pub ignore_alpha: bool,
 }
 
 /// A picture, and what its file says of it.
@@ -134,8 +138,8 @@ impl Image {
     ///
     /// # Errors
     /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture
-    /// that is as wide as high and opaque, or it is an EXR compressed by B44 or DWA, or an EXR
-    /// without that layer.
+    /// that is as wide as high and, unless its alpha is to be ignored, opaque, or it is an EXR
+    /// compressed by B44 or DWA, or an EXR without that layer.
     pub fn load_with(
         path: impl AsRef<Path>,
         options: &LoadOptions,
@@ -152,7 +156,7 @@ impl Image {
         let file = BufReader::new(File::open(path).map_err(unreadable)?);
         let read = match format {
             Format::Exr => exr::read(file, options),
-            _ => png::read(file).map(LoadedImage::only),
+            _ => png::read(file, options).map(LoadedImage::only),
         };
         read.map_err(|problem| match problem {
             Problem::Io(reason) => unreadable(reason),

@@ -68,6 +68,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
         block.layer == layer.part && tile.is_largest_resolution_level()
     })?;
     let parts = chunks.meta_data().clone();
+    let mut opaque = true;
     for chunk in chunks {
         let chunk = chunk?;
         // Only this part has been checked.
@@ -78,7 +79,10 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
         if block.index.level != Vec2(0, 0) {
             return Err(wrong_block());
         }
-        copy(&block, &parts.headers[layer.part], &layer, &mut image);
+        opaque &= copy(&block, &parts.headers[layer.part], &layer, &mut image);
+    }
+    if !opaque && !options.ignore_alpha {
+        return Err(Problem::Transparent);
     }
     Ok(LoadedImage {
         image,
@@ -91,21 +95,30 @@ fn wrong_block() -> Problem {
     Problem::Damaged("its table of blocks names one of another picture".to_owned())
 }
 
-/// Copies the layer's samples of a block to where they are in the picture.
-fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut Image) {
+/// Copies the layer's colours of a block to where they are in the picture; whether all of them are
+/// opaque.
+fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut Image) -> bool {
+    let mut opaque = true;
     let size = image.size() as usize;
     for line in block.lines(&header.channels) {
-        let Some(Role::Color(color)) = layer.role(line.location.channel) else {
+        let Some(role) = layer.role(line.location.channel) else {
             continue;
         };
         let kind = header.channels.list[line.location.channel].sample_type;
-        let Vec2(first, row_from_top) = line.location.position;
-        let start = (size - 1 - row_from_top) * size + first;
-        let pixels = image.samples_mut()[3 * start..].chunks_exact_mut(3);
-        for (pixel, sample) in pixels.zip(samples(line.value, kind)) {
-            pixel[color] = sample;
+        let mut samples = samples(line.value, kind);
+        match role {
+            Role::Alpha => opaque &= samples.all(|alpha| alpha == 1.0),
+            Role::Color(color) => {
+                let Vec2(first, row_from_top) = line.location.position;
+                let start = (size - 1 - row_from_top) * size + first;
+                let pixels = image.samples_mut()[3 * start..].chunks_exact_mut(3);
+                for (pixel, sample) in pixels.zip(samples) {
+                    pixel[color] = sample;
+                }
+            }
         }
     }
+    opaque
 }
 
 /// The numbers of a decompressed line, which are as this machine has them.

@@ -5,7 +5,7 @@ use std::io::{self, BufReader};
 
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
-use super::{Problem, square};
+use super::{LoadOptions, Problem, square};
 use crate::image::{Image, ImageError};
 use crate::memory;
 
@@ -20,7 +20,7 @@ impl From<DecodingError> for Problem {
     }
 }
 
-pub(super) fn read(file: BufReader<File>) -> Result<Image, Problem> {
+pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Image, Problem> {
     let mut decoder = Decoder::new(file);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;
@@ -69,7 +69,7 @@ pub(super) fn read(file: BufReader<File>) -> Result<Image, Problem> {
                 // A palette has been expanded.
                 ColorType::Rgb | ColorType::Indexed => ([0, 1, 2], true),
             };
-            if !opaque {
+            if !opaque && !options.ignore_alpha {
                 return Err(Problem::Transparent);
             }
             sample.copy_from_slice(&color.map(value));
