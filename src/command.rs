@@ -91,6 +91,17 @@ pub(crate) enum Failure {
         reason: SizesDiffer,
     },
     #[error(
+        "{} and {}: show pixels {} and {} of a scene, by their data windows: render both with one window",
+        a.display(), b.display(), window(corners[0], *size), window(corners[1], *size)
+    )]
+    Windows {
+        a: PathBuf,
+        b: PathBuf,
+        /// Those of [`firsthit::image::LoadedImage`].
+        corners: [[i32; 2]; 2],
+        size: u32,
+    },
+    #[error(
         "{} and {}: neither has a layer {layer}, nor any with a name: leave out --layer",
         a.display(), b.display()
     )]
@@ -116,6 +127,13 @@ pub(crate) enum Failure {
     TooManyWrong(String),
     #[error("standard output cannot be written: {0}: send it elsewhere")]
     StandardOutput(io::Error),
+}
+
+/// The first and the last pixel of a data window of `size` × `size` pixels, from the upper left.
+fn window(corner: [i32; 2], size: u32) -> String {
+    let [left, top] = corner.map(i64::from);
+    let more = i64::from(size) - 1;
+    format!("({left}, {top}) to ({}, {})", left + more, top + more)
 }
 
 /// Does what the words of a command line say, of which the first is the program's name.

@@ -221,3 +221,34 @@ fn what_is_not_opaque_is_refused_unless_its_alpha_is_to_be_ignored() {
     refused(&folder, "own.png glass.png");
     equal(&folder, "own.png glass.png --ignore-alpha");
 }
+
+#[test]
+fn pictures_of_other_data_windows_are_not_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let channels = [("R", 0.25), ("G", 0.5), ("B", 4.0)];
+    write_own(&folder, "own.exr", COLOR);
+    for (name, corner) in [
+        ("left.exr", [-3, 0]),
+        ("down.exr", [0, 1]),
+        ("again.exr", [0, 1]),
+    ] {
+        let parts = [part(("", &channels), corner)];
+        write_parts(&folder.path().join(name), parts.into_iter().collect());
+    }
+    for (line, windows) in [
+        (
+            "own.exr left.exr",
+            "(0, 0) to (1, 1) and (-3, 0) to (-2, 1)",
+        ),
+        ("down.exr own.exr", "(0, 1) to (1, 2) and (0, 0) to (1, 1)"),
+        (
+            "left.exr down.exr",
+            "(-3, 0) to (-2, 1) and (0, 1) to (1, 2)",
+        ),
+    ] {
+        let said = refused(&folder, line);
+        assert!(said.contains(windows), "{said}");
+    }
+    equal(&folder, "down.exr again.exr");
+    equal(&folder, "own.exr own.exr");
+}

@@ -59,6 +59,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         reason,
     };
     let difference = Difference::of(&a.image, &b.image).map_err(sizes)?;
+    if a.corner != b.corner {
+        return Err(Failure::Windows {
+            a: arguments.a.clone(),
+            b: arguments.b.clone(),
+            corners: [a.corner, b.corner],
+            size: a.image.size(),
+        });
+    }
     if let Some(path) = &arguments.output {
         save_heat(&a.image, &b.image, path)?;
     }

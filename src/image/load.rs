@@ -106,6 +106,10 @@ pub struct LoadOptions {
 pub struct LoadedImage {
     /// The picture.
     pub image: Image,
+    /// Where an EXR's data window begins: the column from the left and the row from the top of its
+    /// upper left pixel, in the coordinates that all windows of EXRs have. `[0, 0]` in a file that
+    /// has no windows.
+    pub corner: [i32; 2],
     /// The name of its layer; empty where the file gives it none.
     pub layer: String,
     /// The names of the file's other layers of red, green and blue.
@@ -117,6 +121,7 @@ impl LoadedImage {
     fn only(image: Image) -> LoadedImage {
         LoadedImage {
             image,
+            corner: [0, 0],
             layer: String::new(),
             other_layers: Vec::new(),
         }

@@ -63,6 +63,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     let (layer, other_layers) = layers::choose(file.headers(), options.layer.as_deref())?;
     let header = &file.headers()[layer.part];
     check_part(header)?;
+    let Vec2(left, top) = header.own_attributes.layer_position;
     let mut image = square(header.layer_size.width(), header.layer_size.height())?;
     let chunks = file.filter_chunks(false, |_, tile, block| {
         block.layer == layer.part && tile.is_largest_resolution_level()
@@ -86,6 +87,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     }
     Ok(LoadedImage {
         image,
+        corner: [left, top],
         layer: layer.name,
         other_layers,
     })
