@@ -17,7 +17,7 @@ use crate::memory;
 pub use animation::Animation;
 pub use error::SaveError;
 pub use format::Format;
-pub use load::{LoadError, LoadOptions, LoadedImage};
+pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};
 pub use unfinished::abandon_unfinished;
 
 /// The largest number of pixels along a side.

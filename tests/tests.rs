@@ -39,6 +39,7 @@ mod listing;
 mod offscreen;
 mod oracle;
 mod pictures;
+mod portable_maps;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod program;
 mod progress;

@@ -12,7 +12,8 @@ use super::{Failure, print, wrong};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// A picture: .exr (every float bit for bit) or .png (each byte taken as byte / 255)
+    /// A picture: .exr or .pfm (every float bit for bit), .png or .ppm (each whole number as a
+    /// fraction of the largest, a byte as byte / 255)
     a: PathBuf,
     /// The picture to compare it with, of the same size
     b: PathBuf,
@@ -134,12 +135,13 @@ fn text(arguments: &Arguments, pictures: [&LoadedImage; 2], difference: &Differe
                     .join(", ")
             );
         }
-        if let Ok(Format::Png) = Format::of(path) {
+        if let Some(largest) = picture.largest {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "note               {} holds whole numbers, of 8 bits as a rule: read as byte / 255, so that an error below 1/510 can be its rounding",
-                path.display()
+                "note               {} holds whole numbers from 0 to {largest}: read as number / {largest}, so that an error below 1/{} can be its rounding",
+                path.display(),
+                2 * u32::from(largest),
             );
         }
     }

@@ -1,9 +1,13 @@
-//! A picture out of a file: an EXR as it is, a PNG as the fractions that its whole numbers stand
-//! for.
+//! A picture out of a file: floats as they are, whole numbers as the fractions that they stand for.
 
 mod exr;
+mod format;
 mod layers;
+mod pfm;
 mod png;
+mod ppm;
+mod samples;
+mod words;
 
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -11,17 +15,18 @@ use std::path::{Path, PathBuf};
 
 use ::exr::compression::Compression;
 
-use super::{Format, Image, ImageError, MAX_SIZE};
+use super::{Image, ImageError, MAX_SIZE};
+pub use format::InputFormat;
 
 /// A file that no picture can be read from. Each message is one line.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The extension names no format that can be read.
-    #[error("{}: this extension names no picture that can be read: choose an .exr or a .png", .0.display())]
+    #[error("{}: this extension names no picture that can be read: choose an .exr, .pfm, .png or .ppm", .0.display())]
     Extension(PathBuf),
     /// The system does not let it be read.
-    #[error("{}: cannot be read: {reason}: give the path of an .exr or a .png", path.display())]
+    #[error("{}: cannot be read: {reason}: give the path of a picture", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -34,7 +39,7 @@ pub enum LoadError {
         /// The file.
         path: PathBuf,
         /// What its extension says.
-        format: Format,
+        format: InputFormat,
         /// What is wrong with it.
         reason: String,
     },
@@ -110,6 +115,8 @@ pub struct LoadedImage {
     /// upper left pixel, in the coordinates that all windows of EXRs have. `[0, 0]` in a file that
     /// has no windows.
     pub corner: [i32; 2],
+    /// The whole number that stands for 1; `None` in a file of floats.
+    pub largest: Option<u16>,
     /// The name of its layer; empty where the file gives it none.
     pub layer: String,
     /// The names of the file's other layers of red, green and blue.
@@ -117,11 +124,20 @@ pub struct LoadedImage {
 }
 
 impl LoadedImage {
-    /// What a file holds that can hold nothing else.
-    fn only(image: Image) -> LoadedImage {
+    /// A picture of fractions of `largest`, all that its file holds.
+    fn of_whole_numbers(image: Image, largest: u16) -> LoadedImage {
+        LoadedImage {
+            largest: Some(largest),
+            ..LoadedImage::of_floats(image)
+        }
+    }
+
+    /// A picture of floats, all that its file holds.
+    fn of_floats(image: Image) -> LoadedImage {
         LoadedImage {
             image,
             corner: [0, 0],
+            largest: None,
             layer: String::new(),
             other_layers: Vec::new(),
         }
@@ -138,11 +154,13 @@ impl Image {
     }
 
     /// Reads `path`: red, green and blue of an `.exr`, every 32-bit float bit for bit, from channels
-    /// named R, G, B or r, g, b, alone or behind a layer's name and a dot; or a `.png`, where a
-    /// sample is the byte / 255 (of a PNG of 16 bits: the number / 65535), rounded to f32.
+    /// named R, G, B or r, g, b, alone or behind a layer's name and a dot; a `.pfm`, bit for bit
+    /// too, grey as three equal samples; a `.png`, where a sample is the byte / 255 (of a PNG of 16
+    /// bits: the number / 65535), rounded to f32; or a `.ppm`, P3 or P6, where it is the number /
+    /// the largest that the file names.
     ///
     /// # Errors
-    /// [`LoadError`] where the extension is neither of the two, or the file is not a whole picture
+    /// [`LoadError`] where the extension is none of these, or the file is not a whole picture
     /// that is as wide as high and, unless its alpha is to be ignored, opaque, or it is an EXR
     /// compressed by B44 or DWA, or an EXR without that layer.
     pub fn load_with(
@@ -150,18 +168,17 @@ impl Image {
         options: &LoadOptions,
     ) -> Result<LoadedImage, LoadError> {
         let path = path.as_ref();
-        let format = Format::of(path).map_err(|_| LoadError::Extension(path.to_owned()))?;
-        if format == Format::Apng {
-            return Err(LoadError::Extension(path.to_owned()));
-        }
+        let format = InputFormat::of(path)?;
         let unreadable = |reason| LoadError::Unreadable {
             path: path.to_owned(),
             reason,
         };
         let file = BufReader::new(File::open(path).map_err(unreadable)?);
         let read = match format {
-            Format::Exr => exr::read(file, options),
-            _ => png::read(file, options).map(LoadedImage::only),
+            InputFormat::Exr => exr::read(file, options),
+            InputFormat::Pfm => pfm::read(file),
+            InputFormat::Png => png::read(file, options),
+            InputFormat::Ppm => ppm::read(file),
         };
         read.map_err(|problem| match problem {
             Problem::Io(reason) => unreadable(reason),

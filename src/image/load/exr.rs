@@ -88,6 +88,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     Ok(LoadedImage {
         image,
         corner: [left, top],
+        largest: None,
         layer: layer.name,
         other_layers,
     })

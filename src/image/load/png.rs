@@ -5,8 +5,8 @@ use std::io::{self, BufReader};
 
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
-use super::{LoadOptions, Problem, square};
-use crate::image::{Image, ImageError};
+use super::{LoadOptions, LoadedImage, Problem, square};
+use crate::image::ImageError;
 use crate::memory;
 
 impl From<DecodingError> for Problem {
@@ -20,7 +20,7 @@ impl From<DecodingError> for Problem {
     }
 }
 
-pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Image, Problem> {
+pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<LoadedImage, Problem> {
     let mut decoder = Decoder::new(file);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;
@@ -75,5 +75,6 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Image
             sample.copy_from_slice(&color.map(value));
         }
     }
-    Ok(image)
+    let largest = if wide { u16::MAX } else { u16::from(u8::MAX) };
+    Ok(LoadedImage::of_whole_numbers(image, largest))
 }

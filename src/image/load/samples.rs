@@ -1,0 +1,63 @@
+//! The samples of a picture, one after the other.
+
+use super::{Problem, side};
+use crate::image::{Image, ImageError};
+use crate::memory;
+
+/// How many samples there is room for at first.
+const FIRST: usize = 1 << 16;
+
+/// Samples in the order of a file. They take memory as they come: what a file says of its size may
+/// be wrong.
+pub(super) struct Samples {
+    size: u32,
+    samples: Vec<f32>,
+}
+
+impl Samples {
+    /// None yet, of a picture of this size.
+    pub(super) fn new(width: usize, height: usize) -> Result<Samples, Problem> {
+        Ok(Samples {
+            size: side(width, height)?,
+            samples: Vec::new(),
+        })
+    }
+
+    /// How many pixels the picture has.
+    pub(super) fn pixels(&self) -> usize {
+        (self.size as usize).pow(2)
+    }
+
+    /// Adds a pixel.
+    pub(super) fn push(&mut self, pixel: [f32; 3]) -> Result<(), Problem> {
+        let (length, room) = (self.samples.len(), self.samples.capacity());
+        if length + 3 > room {
+            let more = length.clamp(FIRST, (3 * self.pixels()).max(FIRST));
+            memory::reserve(&mut self.samples, more).map_err(|_| self.too_large())?;
+        }
+        self.samples.extend(pixel);
+        Ok(())
+    }
+
+    /// The picture, whose rows came from the bottom.
+    pub(super) fn image_from_bottom(self) -> Result<Image, Problem> {
+        let mut image = Image::new(self.size).map_err(Problem::Image)?;
+        image.samples_mut().copy_from_slice(&self.samples);
+        Ok(image)
+    }
+
+    /// The picture, whose rows came from the top.
+    pub(super) fn image_from_top(self) -> Result<Image, Problem> {
+        let mut image = Image::new(self.size).map_err(Problem::Image)?;
+        let row = 3 * self.size as usize;
+        let rows = image.samples_mut().chunks_exact_mut(row).rev();
+        for (to, from) in rows.zip(self.samples.chunks_exact(row)) {
+            to.copy_from_slice(from);
+        }
+        Ok(image)
+    }
+
+    fn too_large(&self) -> Problem {
+        Problem::Image(ImageError::Memory(self.size))
+    }
+}
