@@ -7,12 +7,14 @@
 
 #[cfg(feature = "program")]
 mod heat;
+mod pixels;
 mod scale;
 
 use crate::Image;
 use crate::image::display_byte;
 #[cfg(feature = "program")]
 pub use heat::{HeatError, save_heat};
+pub use pixels::{PixelDifference, WorstPixel, limit};
 pub use scale::error_color;
 
 /// Two pictures that cannot be compared.
@@ -46,6 +48,16 @@ fn place(sample: f32) -> i32 {
     } else {
         magnitude
     }
+}
+
+/// The worst error of a pixel's samples; a NaN against a number is worse than any.
+fn worst(pixel: &[f32], truth: &[f32]) -> Option<u32> {
+    pixel
+        .iter()
+        .zip(truth)
+        .try_fold(0, |worst, (&sample, &truth)| {
+            steps(sample, truth).map(|steps| steps.max(worst))
+        })
 }
 
 /// What there is to say about any number of samples, each compared with its true value.

@@ -372,3 +372,50 @@ fn the_false_colours_are_those_of_the_errors_above_a_scale() {
     // Nothing else is left in the folder.
     assert_eq!(folder.path().read_dir().unwrap().count(), 3);
 }
+
+#[test]
+fn the_worst_pixel_is_named_and_pixels_are_counted_by_how_far_they_are_off() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    let up = |steps: u32| f32::from_bits(0.5_f32.to_bits() + steps);
+    // One step; two, and one in another sample; five; a quarter, which is 2^22 floats.
+    let b = picture(&[
+        (0, up(1)),
+        (4, up(2)),
+        (5, up(1)),
+        (12, up(5)),
+        (6 * 3 + 1, 0.75),
+        (15, f32::from_bits(0.75_f32.to_bits() - 1)),
+    ]);
+    saved(&folder, "b.exr", &b);
+    let text = compared(&folder, "a.exr b.exr");
+    assert_eq!(
+        line(&text, "worst pixel"),
+        "column 2, row 2 from the top, 1 from the bottom: [0.5, 0.5, 0.5] and [0.5, 0.75, 0.5], 4194304 f32 steps"
+    );
+    let steps = line(&text, "pixels by steps");
+    let begin = "of 16, 5 beyond 0, 4 beyond 1, 3 beyond 2, 3 beyond 4, 2 beyond 8, 2 beyond 16";
+    assert!(steps.starts_with(begin), "{steps}");
+    let end = ", 2 beyond 1048576, 2 beyond 2097152, 0 beyond 4194304";
+    assert!(steps.ends_with(end), "{steps}");
+    // Of 128 and 191.
+    let bytes = "of 16, 2 beyond 0, 2 beyond 1, 2 beyond 2, 2 beyond 4, 2 beyond 8, 2 beyond 16, 2 beyond 32, 0 beyond 64";
+    assert_eq!(line(&text, "pixels by bytes"), bytes);
+
+    saved(&folder, "nan.exr", &picture(&[(19, 1e30), (47, f32::NAN)]));
+    let text = compared(&folder, "nan.exr a.exr");
+    assert_eq!(
+        line(&text, "worst pixel"),
+        "column 3, row 0 from the top, 3 from the bottom: [0.5, 0.5, NaN] and [0.5, 0.5, 0.5], a NaN against a number"
+    );
+    assert!(line(&text, "pixels by steps").ends_with(", 1 beyond 2147483648"));
+
+    saved(&folder, "zero.exr", &picture(&[(0, 0.0), (1, f32::NAN)]));
+    saved(&folder, "minus.exr", &picture(&[(0, -0.0), (1, -f32::NAN)]));
+    let text = compared(&folder, "zero.exr minus.exr");
+    assert_eq!(
+        line(&text, "worst pixel"),
+        "none: no number differs from another"
+    );
+    assert_eq!(line(&text, "pixels by steps"), "of 16, 0 beyond 0");
+}

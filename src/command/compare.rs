@@ -1,10 +1,11 @@
-//! `firsthit compare`: two pictures, sample by sample.
+//! `firsthit compare`: two pictures, sample by sample and pixel by pixel.
 
-use std::fmt::Write as _;
+mod text;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use firsthit::difference::{Difference, save_heat};
+use firsthit::difference::{Difference, PixelDifference, save_heat};
 use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
 
 use super::watchdog::Watchdog;
@@ -32,6 +33,13 @@ pub(crate) struct Arguments {
     threshold: Option<u32>,
 }
 
+/// Pictures and how far they are apart.
+struct Compared {
+    pictures: [LoadedImage; 2],
+    samples: Difference,
+    pixels: PixelDifference,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.output
         && !matches!(Format::of(path), Ok(Format::Png))
@@ -39,120 +47,73 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("{}: a false-colour picture is a .png", path.display());
         return Err(wrong::<Arguments>("firsthit compare", message).into());
     }
-    let options = LoadOptions {
-        layer: arguments.layer.clone(),
-        ignore_alpha: arguments.ignore_alpha,
-    };
-    let (a, b) = (load(&arguments.a, &options)?, load(&arguments.b, &options)?);
-    if let Some(layer) = &arguments.layer
-        && a.layer.is_empty()
-        && b.layer.is_empty()
-    {
-        return Err(Failure::NoLayers {
-            a: arguments.a.clone(),
-            b: arguments.b.clone(),
-            layer: layer.clone(),
-        });
-    }
-    let sizes = |reason| Failure::Sizes {
-        a: arguments.a.clone(),
-        b: arguments.b.clone(),
-        reason,
-    };
-    let difference = Difference::of(&a.image, &b.image).map_err(sizes)?;
-    if a.corner != b.corner {
-        return Err(Failure::Windows {
-            a: arguments.a.clone(),
-            b: arguments.b.clone(),
-            corners: [a.corner, b.corner],
-            size: a.image.size(),
-        });
-    }
+    let compared = arguments.compare()?;
+    let [a, b] = &compared.pictures;
     if let Some(path) = &arguments.output {
         save_heat(&a.image, &b.image, path)?;
     }
-    print(&text(arguments, [&a, &b], &difference))?;
-    match arguments.threshold {
-        Some(threshold)
-            if difference.max_steps > threshold || difference.nan_against_number > 0 =>
+    print(&text::text(arguments, &compared))?;
+    arguments
+        .limit_passed(&compared.samples)
+        .map_or(Ok(()), Err)
+}
+
+impl Arguments {
+    fn paths(&self) -> [&Path; 2] {
+        [&self.a, &self.b]
+    }
+
+    /// Reads the pictures, which must show the same pixels.
+    fn compare(&self) -> Result<Compared, Failure> {
+        let options = LoadOptions {
+            layer: self.layer.clone(),
+            ignore_alpha: self.ignore_alpha,
+        };
+        let pictures = [load(&self.a, &options)?, load(&self.b, &options)?];
+        let [a, b] = &pictures;
+        if let Some(layer) = &self.layer
+            && a.layer.is_empty()
+            && b.layer.is_empty()
         {
-            Err(Failure::BeyondThreshold {
-                a: arguments.a.clone(),
-                b: arguments.b.clone(),
-                steps: difference.max_steps,
-                nans: difference.nan_against_number,
-                threshold,
-            })
+            return Err(Failure::NoLayers {
+                a: self.a.clone(),
+                b: self.b.clone(),
+                layer: layer.clone(),
+            });
         }
-        _ => Ok(()),
+        let sizes = |reason| Failure::Sizes {
+            a: self.a.clone(),
+            b: self.b.clone(),
+            reason,
+        };
+        let samples = Difference::of(&a.image, &b.image).map_err(sizes)?;
+        let pixels = PixelDifference::of(&a.image, &b.image).map_err(sizes)?;
+        if a.corner != b.corner {
+            return Err(Failure::Windows {
+                a: self.a.clone(),
+                b: self.b.clone(),
+                corners: [a.corner, b.corner],
+                size: a.image.size(),
+            });
+        }
+        Ok(Compared {
+            pictures,
+            samples,
+            pixels,
+        })
     }
-}
 
-fn text(arguments: &Arguments, pictures: [&LoadedImage; 2], difference: &Difference) -> String {
-    let size = pictures[0].image.size();
-    let Difference {
-        samples,
-        wrong,
-        nans: [nans_a, nans_b],
-        nan_against_number,
-        max_steps,
-        max_abs,
-        eight_bit,
-        ..
-    } = difference;
-    let percent = 100.0 * *wrong as f64 / *samples as f64;
-    let mut text = format!(
-        "pictures           {} and {}, {size} × {size} pixels\n\
-         wrong samples      {wrong} of {samples} ({percent:.3} %)\n\
-         error in f32 steps {max_steps} at most, {:.4} in the mean\n\
-         absolute error     {max_abs:.4e} at most, {:.4e} in the mean\n\
-         8-bit differences  {eight_bit}\n\
-         PSNR               {}\n\
-         NaN                {nans_a} and {nans_b}; {nan_against_number} against a number, in no error above\n",
-        arguments.a.display(),
-        arguments.b.display(),
-        difference.mean_steps(),
-        difference.mean_abs(),
-        match difference.psnr() {
-            f64::INFINITY => "infinite: no number differs from another".to_owned(),
-            ratio => format!("{ratio:.2} dB for a peak of 1"),
-        },
-    );
-    for (path, picture) in [&arguments.a, &arguments.b].into_iter().zip(pictures) {
-        if !picture.other_layers.is_empty() {
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "note               {}: {} is read of {} layers: --layer chooses another: {}",
-                path.display(),
-                layer_name(&picture.layer),
-                1 + picture.other_layers.len(),
-                picture
-                    .other_layers
-                    .iter()
-                    .map(|name| layer_name(name))
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            );
-        }
-        if let Some(largest) = picture.largest {
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "note               {} holds whole numbers from 0 to {largest}: read as number / {largest}, so that an error below 1/{} can be its rounding",
-                path.display(),
-                2 * u32::from(largest),
-            );
-        }
-    }
-    text
-}
-
-fn layer_name(name: &str) -> &str {
-    if name.is_empty() {
-        "the nameless layer"
-    } else {
-        name
+    /// The limit that the pictures are beyond.
+    fn limit_passed(&self, difference: &Difference) -> Option<Failure> {
+        let (steps, nans) = (difference.max_steps, difference.nan_against_number);
+        let threshold = self.threshold?;
+        (steps > threshold || nans > 0).then(|| Failure::BeyondThreshold {
+            a: self.a.clone(),
+            b: self.b.clone(),
+            steps,
+            nans,
+            threshold,
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::IVec2;
 
 use super::scale::{OCTAVES, color_at};
-use super::{SizesDiffer, error_color, steps};
+use super::{SizesDiffer, error_color, worst};
 use crate::Image;
 use crate::image::whole_file::{Output, WholeFile};
 use crate::image::{SaveError, png};
@@ -74,16 +74,6 @@ fn write(image: &Image, truth: &Image, output: &mut Output) -> io::Result<()> {
     stream.write_all(&legend.bytes)?;
     stream.finish()?;
     writer.finish().map_err(::png::EncodingError::into)
-}
-
-/// The worst error of a pixel's samples; a NaN against a number is worse than any.
-fn worst(pixel: &[f32], truth: &[f32]) -> Option<u32> {
-    pixel
-        .iter()
-        .zip(truth)
-        .try_fold(0, |worst, (&sample, &truth)| {
-            steps(sample, truth).map(|steps| steps.max(worst))
-        })
 }
 
 /// The scale: a box for no error, the ramp with its numbers, a box for NaN.
