@@ -419,3 +419,59 @@ fn the_worst_pixel_is_named_and_pixels_are_counted_by_how_far_they_are_off() {
     );
     assert_eq!(line(&text, "pixels by steps"), "of 16, 0 beyond 0");
 }
+
+#[test]
+fn programs_are_told_the_same_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    let b = picture(&[(0, f32::INFINITY), (7, 0.5_f32.next_up()), (40, f32::NAN)]);
+    saved(&folder, "b.exr", &b);
+    let text = compared(&folder, "a.exr b.exr --json c.json");
+    assert_eq!(text, compared(&folder, "a.exr b.exr"));
+    let json = fs::read_to_string(folder.path().join("c.json")).unwrap();
+    // Nothing else is on standard output.
+    assert_eq!(compared(&folder, "a.exr b.exr --json -"), json);
+    assert_eq!(helpers::names(&folder), ["a.exr", "b.exr", "c.json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    for (name, value) in [
+        ("/a/path", serde_json::json!("a.exr")),
+        ("/b/nans", serde_json::json!(1)),
+        ("/b/other_layers", serde_json::json!([])),
+        ("/size", serde_json::json!(4)),
+        ("/samples", serde_json::json!(48)),
+        ("/wrong", serde_json::json!(3)),
+        (
+            "/max_ulp",
+            serde_json::json!(f32::INFINITY.to_bits() - 0.5_f32.to_bits()),
+        ),
+        ("/max_abs", serde_json::Value::Null),
+        ("/nan_against_number", serde_json::json!(1)),
+        ("/pixels", serde_json::json!(16)),
+        (
+            "/pixels_beyond_ulp/0",
+            serde_json::json!({"limit": 0, "pixels": 3}),
+        ),
+        (
+            "/pixels_beyond_ulp/1",
+            serde_json::json!({"limit": 1, "pixels": 2}),
+        ),
+        (
+            "/pixels_beyond_bytes/8",
+            serde_json::json!({"limit": 128, "pixels": 0}),
+        ),
+        ("/worst_pixel/column", serde_json::json!(1)),
+        ("/worst_pixel/row_from_top", serde_json::json!(0)),
+        ("/worst_pixel/row_from_bottom", serde_json::json!(3)),
+        ("/worst_pixel/a", serde_json::json!([0.5, 0.5, 0.5])),
+        ("/worst_pixel/b", serde_json::json!([0.5, null, 0.5])),
+        ("/worst_pixel/ulp", serde_json::Value::Null),
+        ("/within_limits", serde_json::json!(true)),
+    ] {
+        assert_eq!(json.pointer(name), Some(&value), "{name} of {json}");
+    }
+    let output = compare(&folder, "a.exr b.exr --threshold 9 --json -");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(self::text(&output.stdout).contains("\"within_limits\": false"));
+    let said = failed(&folder, "a.exr b.exr --json none/c.json", 1);
+    assert!(said.contains("none/c.json: cannot be written"), "{said}");
+}

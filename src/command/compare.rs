@@ -1,5 +1,6 @@
 //! `firsthit compare`: two pictures, sample by sample and pixel by pixel.
 
+mod json;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -7,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use firsthit::difference::{Difference, PixelDifference, save_heat};
 use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
+use firsthit::report;
 
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
@@ -28,6 +30,9 @@ pub(crate) struct Arguments {
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
+    /// A file to write the comparison to, as JSON; - is standard output, which has nothing else then
+    #[arg(long, value_name = "PATH")]
+    json: Option<PathBuf>,
     /// Fail where a sample is further off than this many f32 steps, or a NaN on one side only
     #[arg(long, value_name = "ULP")]
     threshold: Option<u32>,
@@ -52,10 +57,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.output {
         save_heat(&a.image, &b.image, path)?;
     }
-    print(&text::text(arguments, &compared))?;
-    arguments
-        .limit_passed(&compared.samples)
-        .map_or(Ok(()), Err)
+    let failure = arguments.limit_passed(&compared.samples);
+    let json = || json::json(arguments, &compared, failure.is_none());
+    match &arguments.json {
+        Some(path) if path == "-" => print(&json())?,
+        path => {
+            if let Some(path) = path {
+                report::save(&json(), path)?;
+            }
+            print(&text::text(arguments, &compared))?;
+        }
+    }
+    failure.map_or(Ok(()), Err)
 }
 
 impl Arguments {

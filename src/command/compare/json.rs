@@ -1,0 +1,105 @@
+//! A comparison for programs.
+
+use firsthit::difference::{WorstPixel, limit};
+use serde::Serialize;
+
+use super::{Arguments, Compared};
+
+/// The whole of it. What cannot be said as a number, an infinite error or a NaN, is `null`.
+#[derive(Serialize)]
+struct Json {
+    version: u32,
+    a: JsonPicture,
+    b: JsonPicture,
+    size: u32,
+    samples: u64,
+    wrong: u64,
+    max_ulp: u32,
+    mean_ulp: f64,
+    max_abs: f64,
+    mean_abs: f64,
+    eight_bit_differences: u64,
+    psnr: f64,
+    nan_against_number: u64,
+    pixels: u64,
+    pixels_beyond_ulp: Vec<Beyond>,
+    pixels_beyond_bytes: Vec<Beyond>,
+    worst_pixel: Option<JsonPixel>,
+    /// Whether all is within the limits that were given.
+    within_limits: bool,
+}
+
+#[derive(Serialize)]
+struct JsonPicture {
+    path: String,
+    layer: String,
+    other_layers: Vec<String>,
+    nans: u64,
+}
+
+/// So many pixels are off by more than this.
+#[derive(Serialize)]
+struct Beyond {
+    limit: u32,
+    pixels: u64,
+}
+
+#[derive(Serialize)]
+struct JsonPixel {
+    column: u32,
+    row_from_top: u32,
+    row_from_bottom: u32,
+    a: [f32; 3],
+    b: [f32; 3],
+    /// `null` where only one has a NaN.
+    ulp: Option<u32>,
+}
+
+/// One object, and a line break.
+pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bool) -> String {
+    let (samples, pixels) = (&compared.samples, &compared.pixels);
+    let size = compared.pictures[0].image.size();
+    let picture = |place: usize| JsonPicture {
+        path: arguments.paths()[place].display().to_string(),
+        layer: compared.pictures[place].layer.clone(),
+        other_layers: compared.pictures[place].other_layers.clone(),
+        nans: samples.nans[place],
+    };
+    let beyond = |counts: &[u64]| {
+        let counts = counts.iter().enumerate();
+        let counts = counts.map(|(place, &pixels)| Beyond {
+            limit: limit(place),
+            pixels,
+        });
+        counts.collect()
+    };
+    let pixel = |pixel: WorstPixel| JsonPixel {
+        column: pixel.column,
+        row_from_top: size - 1 - pixel.row,
+        row_from_bottom: pixel.row,
+        a: pixel.colors[0],
+        b: pixel.colors[1],
+        ulp: pixel.steps,
+    };
+    let json = Json {
+        version: 1,
+        a: picture(0),
+        b: picture(1),
+        size,
+        samples: samples.samples,
+        wrong: samples.wrong,
+        max_ulp: samples.max_steps,
+        mean_ulp: samples.mean_steps(),
+        max_abs: samples.max_abs,
+        mean_abs: samples.mean_abs(),
+        eight_bit_differences: samples.eight_bit,
+        psnr: samples.psnr(),
+        nan_against_number: samples.nan_against_number,
+        pixels: pixels.pixels,
+        pixels_beyond_ulp: beyond(&pixels.beyond_steps),
+        pixels_beyond_bytes: beyond(&pixels.beyond_bytes),
+        worst_pixel: pixels.worst.map(pixel),
+        within_limits,
+    };
+    serde_json::to_string_pretty(&json).map_or_else(|_| String::new(), |text| text + "\n")
+}
