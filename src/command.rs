@@ -113,15 +113,17 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Heat(#[from] HeatError),
     #[error(
-        "{} and {}: up to {steps} f32 steps apart and {nans} NaNs against a number, beyond the threshold of {threshold}: see where with -o HEAT.png",
+        "{} and {}: up to {found} and {nans} NaNs against a number, beyond the {limit}: see where with -o HEAT.png",
         a.display(), b.display()
     )]
-    BeyondThreshold {
+    BeyondLimit {
         a: PathBuf,
         b: PathBuf,
-        steps: u32,
+        /// The largest error.
+        found: String,
         nans: u64,
-        threshold: u32,
+        /// The largest error that passes, and what it is.
+        limit: String,
     },
     #[error("{0}")]
     TooManyWrong(String),

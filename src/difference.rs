@@ -79,6 +79,9 @@ pub struct Difference {
     pub max_steps: u32,
     /// The largest absolute error; infinite where one sample is.
     pub max_abs: f64,
+    /// The largest absolute error by the magnitude of its true value; infinite where that is 0 or
+    /// infinite.
+    pub max_relative: f64,
     /// Pairs that an 8-bit display shows differently.
     pub eight_bit: u64,
     sum_of_steps: u128,
@@ -120,6 +123,13 @@ impl Difference {
                 self.sum_of_steps += u128::from(steps);
                 let error = (f64::from(sample) - f64::from(truth)).abs();
                 self.max_abs = self.max_abs.max(error);
+                let magnitude = f64::from(truth).abs();
+                // An infinite error is not a number by an infinity.
+                let relative = match magnitude {
+                    f64::INFINITY => magnitude,
+                    _ => error / magnitude,
+                };
+                self.max_relative = self.max_relative.max(relative);
                 self.sum_of_abs += error;
                 self.sum_of_squares += error * error;
             }

@@ -475,3 +475,64 @@ fn programs_are_told_the_same_as_json() {
     let said = failed(&folder, "a.exr b.exr --json none/c.json", 1);
     assert!(said.contains("none/c.json: cannot be written"), "{said}");
 }
+
+#[test]
+fn an_absolute_and_a_relative_limit_are_the_most_that_passes() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[(3, 0.25), (4, -8.0)]));
+    saved(&folder, "b.exr", &picture(&[(3, 0.5), (4, -10.0)]));
+    let text = compared(&folder, "a.exr b.exr");
+    let relative = "5.0000e-1 at most, by the samples of b.exr";
+    assert_eq!(line(&text, "relative error"), relative);
+    for passes in [
+        "a.exr b.exr --tolerance 2",
+        "a.exr b.exr --relative 0.5",
+        "a.exr b.exr --relative 0.5 --tolerance 2 --threshold 8388608",
+        "b.exr a.exr --relative 1",
+    ] {
+        compared(&folder, passes);
+    }
+    for (line, says) in [
+        (
+            "a.exr b.exr --tolerance 1.99",
+            "up to 2e0 apart and 0 NaNs against a number, beyond the tolerance of 1.99",
+        ),
+        (
+            "a.exr b.exr --relative 0.49",
+            "up to 5e-1 times the latter apart and 0 NaNs against a number, beyond the relative error of 0.49",
+        ),
+        (
+            "b.exr a.exr --relative 0.99 --tolerance 2",
+            "beyond the relative error of 0.99",
+        ),
+        (
+            "a.exr b.exr --relative 1 --threshold 8388607",
+            "beyond the threshold of 8388607",
+        ),
+        (
+            "a.exr b.exr --relative 1 --tolerance 0",
+            "beyond the tolerance of 0",
+        ),
+    ] {
+        let said = failed(&folder, line, 1);
+        assert!(said.contains(says), "{line}: {said}");
+    }
+    // By 0 and by an infinity nothing is measured; a NaN is beyond every limit.
+    for sample in [0.0, f32::INFINITY, f32::NAN] {
+        saved(&folder, "none.exr", &picture(&[(9, sample)]));
+        saved(&folder, "half.exr", &picture(&[]));
+        failed(&folder, "half.exr none.exr --relative 1e300", 1);
+        compared(&folder, "none.exr none.exr --relative 0 --tolerance 0");
+    }
+    failed(&folder, "half.exr none.exr --tolerance 1e300", 1);
+    for line in [
+        "--tolerance -1",
+        "--relative -0.5",
+        "--relative NaN",
+        "--tolerance inf",
+    ] {
+        failed(&folder, &format!("a.exr b.exr {line}"), 2);
+    }
+    let help = compared(&folder, "--help");
+    assert!(help.contains("Exit status: 0 if"), "{help}");
+}

@@ -10,10 +10,15 @@ use firsthit::difference::{Difference, PixelDifference, save_heat};
 use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
 use firsthit::report;
 
+use super::arguments::finite;
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
+#[command(
+    after_help = "Exit status: 0 if the pictures could be compared and are within every limit that is given, 1 if not, 2 for \
+                  wrong usage"
+)]
 pub(crate) struct Arguments {
     /// A picture: .exr or .pfm (every float bit for bit), .png or .ppm (each whole number as a
     /// fraction of the largest, a byte as byte / 255)
@@ -36,6 +41,12 @@ pub(crate) struct Arguments {
     /// Fail where a sample is further off than this many f32 steps, or a NaN on one side only
     #[arg(long, value_name = "ULP")]
     threshold: Option<u32>,
+    /// Fail where a sample is further off than this, or a NaN on one side only
+    #[arg(long, value_name = "ABS", allow_hyphen_values = true, value_parser = most)]
+    tolerance: Option<f64>,
+    /// Fail where a sample is further off than this many times that of B, or a NaN on one side only
+    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = most)]
+    relative: Option<f64>,
 }
 
 /// Pictures and how far they are apart.
@@ -43,6 +54,14 @@ struct Compared {
     pictures: [LoadedImage; 2],
     samples: Difference,
     pixels: PixelDifference,
+}
+
+/// The largest error that passes.
+fn most(text: &str) -> Result<f64, &'static str> {
+    match finite(text)? {
+        most @ 0.0.. => Ok(most),
+        _ => Err("a number from 0 on is needed"),
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -116,16 +135,33 @@ impl Arguments {
         })
     }
 
-    /// The limit that the pictures are beyond.
+    /// The first limit that the pictures are beyond.
     fn limit_passed(&self, difference: &Difference) -> Option<Failure> {
-        let (steps, nans) = (difference.max_steps, difference.nan_against_number);
-        let threshold = self.threshold?;
-        (steps > threshold || nans > 0).then(|| Failure::BeyondThreshold {
+        let nans = difference.nan_against_number;
+        let (steps, abs) = (difference.max_steps, difference.max_abs);
+        let relative = difference.max_relative;
+        let limits = [
+            self.threshold.map(|most| {
+                let found = format!("{steps} f32 steps apart");
+                (steps > most, found, format!("threshold of {most}"))
+            }),
+            self.tolerance.map(|most| {
+                let found = format!("{abs:e} apart");
+                (abs > most, found, format!("tolerance of {most}"))
+            }),
+            self.relative.map(|most| {
+                let found = format!("{relative:e} times the latter apart");
+                (relative > most, found, format!("relative error of {most}"))
+            }),
+        ];
+        let mut limits = limits.into_iter().flatten();
+        let (_, found, limit) = limits.find(|&(beyond, ..)| beyond || nans > 0)?;
+        Some(Failure::BeyondLimit {
             a: self.a.clone(),
             b: self.b.clone(),
-            steps,
+            found,
             nans,
-            threshold,
+            limit,
         })
     }
 }

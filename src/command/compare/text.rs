@@ -16,6 +16,7 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
         nan_against_number,
         max_steps,
         max_abs,
+        max_relative,
         eight_bit,
         ..
     } = compared.samples;
@@ -32,6 +33,7 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
          wrong samples      {wrong} of {samples} ({:.3} %)\n\
          error in f32 steps {max_steps} at most, {:.4} in the mean\n\
          absolute error     {max_abs:.4e} at most, {:.4e} in the mean\n\
+         relative error     {max_relative:.4e} at most, by the samples of {b}\n\
          8-bit differences  {eight_bit}\n\
          PSNR               {}\n\
          NaN                {nans_a} and {nans_b}; {nan_against_number} against a number, in no error above\n\
