@@ -153,12 +153,24 @@ impl File {
         }
         self.used = now;
         match &self.watched {
-            Watched::Scene(path) => Some(Change::Scene(Box::new(Scene::from_file(path)))),
+            Watched::Scene(path) => Some(Change::Scene(Box::new(read(path)))),
             // A renderer without its file still makes pictures: it is running.
             Watched::Renderer(number, _) => {
                 self.used.is_some().then_some(Change::Renderer(*number))
             }
         }
+    }
+}
+
+/// The scene in the file that is at `path` now. A pipe or a device is refused: to wait for what it
+/// holds would keep every other file from being looked at.
+fn read(path: &Path) -> Result<Scene, SceneFileError> {
+    match fs::metadata(path) {
+        Ok(there) if !there.is_file() && !there.is_dir() => Err(SceneFileError::Read {
+            path: path.to_owned(),
+            reason: io::Error::other("it is a pipe or a device now"),
+        }),
+        _ => Scene::from_file(path),
     }
 }
 
@@ -232,6 +244,32 @@ mod tests {
     #[test]
     fn what_is_no_file_is_not_looked_into() {
         assert!(File::new(Watched::Scene("/dev/null".into())).is_none());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_in_the_place_of_a_scene_is_refused_and_keeps_nothing_waiting() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        fs::write(&path, BALL).unwrap();
+        let mut file = File::new(Watched::Scene(path.clone())).unwrap();
+        fs::remove_file(&path).unwrap();
+        let made = std::process::Command::new("mkfifo").arg(&path).status();
+        assert!(made.unwrap().success());
+        let (send, looked) = mpsc::channel();
+        thread::spawn(move || {
+            let changes = [file.look(), file.look()];
+            let _ = send.send((changes, file));
+        });
+        let looked = looked.recv_timeout(Duration::from_secs(10));
+        let ([first, second], mut file) = looked.unwrap();
+        assert!(first.is_none());
+        let error = scene_of(second).unwrap_err();
+        assert!(error.to_string().contains("it is a pipe"), "{error}");
+        fs::remove_file(&path).unwrap();
+        fs::write(&path, BALL).unwrap();
+        assert!(file.look().is_none());
+        assert!(scene_of(file.look()).is_ok());
     }
 
     #[test]
