@@ -536,3 +536,28 @@ fn an_absolute_and_a_relative_limit_are_the_most_that_passes() {
     let help = compared(&folder, "--help");
     assert!(help.contains("Exit status: 0 if"), "{help}");
 }
+
+#[test]
+fn no_output_takes_the_place_of_another_file_of_the_comparison() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.png", &picture(&[]));
+    saved(&folder, "b.png", &picture(&[(0, 0.25)]));
+    let files = || ["a.png", "b.png"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    let before = files();
+    let (picture, two) = (
+        "this is a picture to be compared",
+        "the false colours and the JSON need two files",
+    );
+    for (line, says) in [
+        ("a.png b.png -o a.png", picture),
+        ("a.png b.png -o ./b.png", picture),
+        ("a.png b.png --json b.png", picture),
+        ("a.png b.png -o c.png --json c.png", two),
+    ] {
+        let said = failed(&folder, line, 2);
+        assert!(said.contains(says), "{line}: {said}");
+        assert!(files() == before, "{line}");
+    }
+    assert_eq!(helpers::names(&folder), ["a.png", "b.png"]);
+    compared(&folder, "a.png b.png -o c.png --json -");
+}

@@ -3,6 +3,7 @@
 mod json;
 mod text;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -65,12 +66,7 @@ fn most(text: &str) -> Result<f64, &'static str> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(path) = &arguments.output
-        && !matches!(Format::of(path), Ok(Format::Png))
-    {
-        let message = format!("{}: a false-colour picture is a .png", path.display());
-        return Err(wrong::<Arguments>("firsthit compare", message).into());
-    }
+    arguments.check_outputs()?;
     let compared = arguments.compare()?;
     let [a, b] = &compared.pictures;
     if let Some(path) = &arguments.output {
@@ -93,6 +89,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn paths(&self) -> [&Path; 2] {
         [&self.a, &self.b]
+    }
+
+    /// Refuses files to be written that are no pictures, or that are read or written as something
+    /// else.
+    fn check_outputs(&self) -> Result<(), Failure> {
+        let refused = |path: &Path, message: &str| {
+            let message = format!("{}: {message}", path.display());
+            Err(wrong::<Arguments>("firsthit compare", message).into())
+        };
+        if let Some(path) = &self.output
+            && !matches!(Format::of(path), Ok(Format::Png))
+        {
+            return refused(path, "a false-colour picture is a .png");
+        }
+        let json = self.json.as_ref().filter(|&path| path != "-");
+        for path in [self.output.as_ref(), json].into_iter().flatten() {
+            if self.paths().iter().any(|input| is_same(path, input)) {
+                return refused(
+                    path,
+                    "this is a picture to be compared: choose another path",
+                );
+            }
+        }
+        match (&self.output, json) {
+            (Some(output), Some(json)) if is_same(output, json) => {
+                refused(json, "the false colours and the JSON need two files")
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Reads the pictures, which must show the same pixels.
@@ -163,6 +188,14 @@ impl Arguments {
             nans,
             limit,
         })
+    }
+}
+
+/// Whether both are paths of one file, or would be.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
     }
 }
 
