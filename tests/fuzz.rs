@@ -4,8 +4,10 @@
 #[cfg(feature = "program")]
 mod command_line;
 mod exr;
+mod pfm;
 mod picture;
 mod png;
+mod ppm;
 mod scene;
 
 use std::fs;
@@ -39,6 +41,16 @@ fn of_exr_files() {
 #[test]
 fn of_png_files() {
     replay("png", png::run);
+}
+
+#[test]
+fn of_pfm_files() {
+    replay("pfm", pfm::run);
+}
+
+#[test]
+fn of_ppm_files() {
+    replay("ppm", ppm::run);
 }
 
 #[cfg(feature = "program")]
