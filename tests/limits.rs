@@ -84,6 +84,23 @@ fn memory_that_is_refused_is_one_line() {
     }
 }
 
+/// The pictures would take three gigabytes.
+#[test]
+fn what_a_short_file_says_of_its_size_takes_no_memory() {
+    let folder = folder();
+    for (name, text) in [
+        ("a.ppm", "P6 16384 16384 255 abc"),
+        ("b.ppm", "P3 16384 16384 255 1 2 3"),
+        ("a.pfm", "PF 16384 16384 -1 abcd"),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+        let line = format!("compare {name} {name}");
+        let mut limited = program_after("ulimit -v 300000", &folder, &line);
+        let message = failed(&limited.output().unwrap(), 1, &line);
+        assert!(message.contains("it ends before"), "{message}");
+    }
+}
+
 #[test]
 fn a_driver_that_could_not_have_its_memory_is_not_asked() {
     let folder = folder();
