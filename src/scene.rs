@@ -10,6 +10,7 @@ mod hull;
 mod rational;
 mod rules;
 
+use std::io::Read;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -153,6 +154,15 @@ impl Scene {
     /// [`SceneFileError`] where the file cannot be read, or its scene is refused.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Scene, SceneFileError> {
         file::load(path.as_ref(), &Scene::builtin())
+    }
+
+    /// Reads a scene from `input` to its end, as [`Scene::from_toml`] reads its text. Errors call
+    /// `name` what is read.
+    ///
+    /// # Errors
+    /// [`SceneFileError`] where the input cannot be read, or its scene is refused.
+    pub fn from_reader(input: impl Read, name: impl AsRef<Path>) -> Result<Scene, SceneFileError> {
+        file::load_from(input, name.as_ref(), &Scene::builtin())
     }
 
     /// A scene to be made in code: without solids and surface, and with the background, the light

@@ -3,15 +3,15 @@
 #[cfg(unix)]
 use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::BufReader;
+use std::io::{BufReader, Write as _};
 use std::path::Path;
-use std::process::Output;
+use std::process::{Output, Stdio};
 
 use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
 use firsthit::image::display_byte;
 use firsthit::screen::{Backend, Offscreen};
-use firsthit::{Image, Kernel, Scene, Stage, scene};
+use firsthit::{Image, Kernel, Scene, Stage, Tracer, scene};
 use tempfile::TempDir;
 
 use crate::helpers::{
@@ -287,6 +287,53 @@ fn a_scene_file_is_what_is_traced() {
     let scene = Scene::from_toml(text).unwrap();
     let image = trace(Kernel::default(), &scene, Stage::Spheres, 0.0, 16);
     assert_eq!(exr_bits(&folder.path().join("a.exr")), bits(&image));
+}
+
+#[test]
+fn a_scene_may_come_from_standard_input() {
+    let folder = folder();
+    // No file of that name is read, and none is watched.
+    fs::write(folder.path().join("-"), "fog = 1").unwrap();
+    let run = |line: &str, scene: &str| {
+        let mut command = program(&folder, line);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+        // Who refuses its arguments reads no scene.
+        let _ = child.stdin.take().unwrap().write_all(scene.as_bytes());
+        child.wait_with_output().unwrap()
+    };
+    let ball = "[[sphere]]\ncenter = [0.0, 0.0, 0.0]\nradius = 0.5\ncolor = [1.0, 0.0, 0.0]\n";
+    let scene = Scene::from_toml(ball).unwrap();
+    let line = "capture --stage 2 --size 16 --scene - --through none -o a.exr";
+    assert_eq!(succeeded(&run(line, ball), line), "");
+    let image = trace(Kernel::default(), &scene, Stage::Spheres, 0.0, 16);
+    assert_eq!(exr_bits(&folder.path().join("a.exr")), bits(&image));
+
+    let tracer = Tracer::new(Kernel::default(), 1).unwrap();
+    let text = tracer.explain(&scene, Stage::Spheres, 0.0, 16, (8, 8));
+    let line = "explain 8 8 --stage 2 --size 16 --scene -";
+    assert_eq!(succeeded(&run(line, ball), line), text.unwrap());
+
+    let line = "report --size 2 --frames 0..0 --kernel double --scene -";
+    let table = succeeded(&run(line, ball), line);
+    assert!(table.contains("\nstandard input  6 "), "{table}");
+    let line = "report --scene - --scene -";
+    let message = helpers::failed(&run(line, ball), 2, line);
+    assert!(message.contains("can be read once"), "{message}");
+
+    for line in ["view --scene -", "capture --stage 6 -o b.png --scene -"] {
+        for (scene, said) in [
+            ("\nfog = 1", "firsthit: standard input: line 2: fog: "),
+            (
+                "background = 1",
+                "firsthit: standard input: line 1: background: ",
+            ),
+        ] {
+            let message = failed(&run(line, scene), line);
+            assert!(message.starts_with(said), "{message}");
+        }
+    }
+    assert_eq!(names(&folder), ["-", "a.exr"]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Arguments that commands share.
 
+use std::io;
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use firsthit::program::{Program, ProgramError};
 use firsthit::{Kernel, Scene, Stage};
 
 use super::Failure;
+use super::streams::{INPUT, is_standard};
 use super::watchdog::Watchdog;
 
 /// What is pictured, and how.
@@ -22,7 +24,7 @@ pub(crate) struct PictureArguments {
     /// Pixels along a side of the picture
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = value_parser!(u32).range(1..=i64::from(MAX_SIZE)))]
     pub(crate) size: u32,
-    /// A scene in TOML; the built-in scene if not given
+    /// A scene in TOML, - for standard input; the built-in scene if not given
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// How numbers are computed; exact if not given
@@ -42,9 +44,9 @@ impl PictureArguments {
         }
     }
 
-    /// The file of `--scene`.
+    /// The file of `--scene`; `None` where the scene comes from standard input.
     pub(crate) fn scene_file(&self) -> Option<PathBuf> {
-        self.scene.clone()
+        self.scene.clone().filter(|path| !is_standard(path))
     }
 
     /// The number of threads as the library takes it: 0 for one a core.
@@ -111,8 +113,13 @@ fn start(command: &str, timeout: Option<Duration>) -> Result<Program, ProgramErr
     Program::start(command, timeout, super::say)
 }
 
-/// The scene in the file `path`.
+/// The scene in the file `path`, or in standard input.
 pub(crate) fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    if is_standard(path) {
+        let name = Path::new(INPUT);
+        let _watchdog = Watchdog::for_input(name);
+        return Ok(Scene::from_reader(io::stdin().lock(), name)?);
+    }
     let _watchdog = Watchdog::for_input(path);
     Ok(Scene::from_file(path)?)
 }

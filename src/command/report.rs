@@ -14,12 +14,14 @@ use firsthit::{Kernel, Render, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{ProgramsArguments, frames, kernel, read_scene, stage, tolerance};
+use super::streams::{INPUT, is_standard};
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// A scene in TOML; may be given several times; the built-in scene if not given
+    /// A scene in TOML, - for standard input; may be given several times; the built-in scene if not
+    /// given
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// The hard scenes too: those that the kernels are tested on
@@ -182,9 +184,17 @@ fn request(arguments: &Arguments) -> Result<Request, Failure> {
         let message = format!("--crowd needs one of the kernels {names}");
         return Err(wrong::<Arguments>("firsthit report", message).into());
     }
+    let is_input = |path: &&PathBuf| is_standard(path);
+    if arguments.scenes.iter().filter(is_input).count() > 1 {
+        let message = "--scene -: standard input can be read once: give it once";
+        return Err(wrong::<Arguments>("firsthit report", message).into());
+    }
     let mut scenes = Vec::new();
     for path in &arguments.scenes {
-        let name = path.display().to_string();
+        let name = match is_standard(path) {
+            true => INPUT.to_owned(),
+            false => path.display().to_string(),
+        };
         scenes.push(NamedScene::of_file(name, read_scene(path)?));
     }
     if scenes.is_empty() {

@@ -21,8 +21,22 @@ const MAX_BYTES: u64 = 1 << 26;
 
 /// The scene in the file `path`; what the file leaves out is taken from `standard`.
 pub(super) fn load(path: &Path, standard: &Scene) -> Result<Scene, SceneFileError> {
-    let path = path.to_owned();
-    match read_text(&path) {
+    let file = File::open(path).map_err(|reason| SceneFileError::Read {
+        path: path.to_owned(),
+        reason,
+    })?;
+    load_from(file, path, standard)
+}
+
+/// The scene in the text that `input` gives, which errors call `name`; what the text leaves out is
+/// taken from `standard`.
+pub(super) fn load_from(
+    input: impl Read,
+    name: &Path,
+    standard: &Scene,
+) -> Result<Scene, SceneFileError> {
+    let path = name.to_owned();
+    match read_text(input) {
         Ok(text) => {
             read(&text, Some(standard)).map_err(|reason| SceneFileError::Scene { path, reason })
         }
@@ -30,11 +44,9 @@ pub(super) fn load(path: &Path, standard: &Scene) -> Result<Scene, SceneFileErro
     }
 }
 
-fn read_text(path: &Path) -> io::Result<String> {
+fn read_text(input: impl Read) -> io::Result<String> {
     let mut bytes = Vec::new();
-    File::open(path)?
-        .take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)?;
+    input.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(io::ErrorKind::FileTooLarge.into());
     }
