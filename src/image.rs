@@ -7,6 +7,7 @@ mod format;
 mod load;
 pub(crate) mod png;
 mod save;
+mod stream;
 mod unfinished;
 pub(crate) mod whole_file;
 
@@ -14,7 +15,7 @@ use std::fmt;
 
 use crate::memory;
 
-pub use animation::Animation;
+pub use animation::{Animation, AnimationWriter};
 pub use error::SaveError;
 pub use format::Format;
 pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};

@@ -9,7 +9,7 @@ use exr::math::Vec2;
 use exr::meta::MetaData;
 use exr::prelude::{Blocks, Compression, LineOrder, f16};
 use firsthit::Image;
-use firsthit::image::{LoadError, display_byte};
+use firsthit::image::{Animation, AnimationWriter, LoadError, display_byte};
 
 use crate::helpers::{bits, exr_bits};
 
@@ -92,6 +92,40 @@ fn a_display_byte_is_rounded_to_even_in_f32() {
         (f32::INFINITY, 255),
     ] {
         assert_eq!(display_byte(sample), byte, "{sample}");
+    }
+}
+
+#[test]
+fn an_output_gets_the_bytes_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for size in [1, 17, 200] {
+        let image = hard(size);
+        let (mut png, mut exr, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+        image.write_png(&mut png).unwrap();
+        image.write_exr(&mut exr).unwrap();
+        image.write_rgb24(&mut bytes).unwrap();
+        for (name, written) in [("a.png", png), ("a.exr", exr)] {
+            image.save(path(name)).unwrap();
+            assert!(fs::read(path(name)).unwrap() == written, "{name} {size}");
+        }
+        let rows = image.samples().chunks(3 * size as usize).rev();
+        let expected: Vec<u8> = rows.flatten().copied().map(display_byte).collect();
+        assert!(bytes == expected, "{size}");
+
+        let mut apng = Vec::new();
+        let mut writer = AnimationWriter::new(&mut apng, size, 2).unwrap();
+        let mut animation = Animation::create(path("a.apng"), size, 2).unwrap();
+        for frame in [&image, &Image::new(size).unwrap()] {
+            writer.push(frame).unwrap();
+            animation.push(frame).unwrap();
+        }
+        writer.finish().unwrap();
+        animation.finish().unwrap();
+        assert!(fs::read(path("a.apng")).unwrap() == apng, "{size}");
+    }
+    for frames in [0, Animation::MAX_FRAMES + 1] {
+        assert!(AnimationWriter::new(Vec::new(), 1, frames).is_err());
     }
 }
 

@@ -1,24 +1,76 @@
 //! An animated PNG: one picture after another, 200 ms each, without end.
 
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 use ::png::{EncodingError, Writer};
 
 use super::error::MAX_FRAMES;
 use super::whole_file::{Output, WholeFile};
-use super::{Image, SaveError, display_byte, png};
+use super::{Image, SaveError, png};
 use crate::memory;
 
 /// A frame stays for 1/5 s.
 const DELAY: (u16, u16) = (1, 5);
 
+/// An animated PNG on its way into any output: frames are given one by one.
+pub struct AnimationWriter<W: Write> {
+    encoder: Writer<W>,
+    bytes: Vec<u8>,
+}
+
+impl<W: Write> AnimationWriter<W> {
+    /// Starts an animation of `frames` frames, `size` × `size` pixels each.
+    ///
+    /// # Errors
+    /// Those of `output`; `InvalidInput` unless there are 1 to [`Animation::MAX_FRAMES`] frames.
+    pub fn new(output: W, size: u32, frames: u64) -> io::Result<AnimationWriter<W>> {
+        let count = count(frames).ok_or(io::ErrorKind::InvalidInput)?;
+        let mut encoder = png::encoder(output, size, size);
+        encoder.set_animated(count, 0)?;
+        encoder.set_frame_delay(DELAY.0, DELAY.1)?;
+        encoder.validate_sequence(true);
+        Ok(AnimationWriter {
+            encoder: encoder.write_header()?,
+            bytes: Vec::new(),
+        })
+    }
+
+    /// Adds the next frame, as [`display_byte`](super::display_byte) shows it.
+    ///
+    /// # Errors
+    /// Those of the output; another one where `image` is of another size, or all frames are there
+    /// already.
+    pub fn push(&mut self, image: &Image) -> io::Result<()> {
+        // The encoder takes an animation's frames whole, not row by row as a single picture.
+        self.bytes.clear();
+        memory::reserve(&mut self.bytes, image.samples().len())?;
+        image.write_rgb24(&mut self.bytes)?;
+        Ok(self.encoder.write_image_data(&self.bytes)?)
+    }
+
+    /// Ends the animation, and flushes the output.
+    ///
+    /// # Errors
+    /// Those of the output; another one where frames are missing.
+    pub fn finish(self) -> io::Result<()> {
+        self.encoder.finish().map_err(EncodingError::into)
+    }
+}
+
+/// The number of frames as the format numbers them, if it can.
+fn count(frames: u64) -> Option<u32> {
+    let count = u32::try_from(frames).ok()?;
+    (1..=Animation::MAX_FRAMES)
+        .contains(&frames)
+        .then_some(count)
+}
+
 /// An `.apng` file in the making: frames are given one by one, and the file appears, whole, with
 /// [`Animation::finish`]; dropped before that, nothing of it is left.
 pub struct Animation {
-    writer: Writer<Output>,
+    writer: AnimationWriter<Output>,
     file: WholeFile,
-    bytes: Vec<u8>,
 }
 
 impl Animation {
@@ -33,48 +85,25 @@ impl Animation {
     /// cannot be written.
     pub fn create(path: impl AsRef<Path>, size: u32, frames: u64) -> Result<Animation, SaveError> {
         let path = path.as_ref();
-        let count = match u32::try_from(frames) {
-            Ok(count) if (1..=Animation::MAX_FRAMES).contains(&frames) => count,
-            _ => {
-                let path = path.to_owned();
-                return Err(SaveError::Frames { path, frames });
-            }
-        };
+        if count(frames).is_none() {
+            let path = path.to_owned();
+            return Err(SaveError::Frames { path, frames });
+        }
         let (file, output) = WholeFile::create(path)?;
-        let start = || {
-            let mut encoder = png::encoder(output, size, size);
-            encoder.set_animated(count, 0)?;
-            encoder.set_frame_delay(DELAY.0, DELAY.1)?;
-            encoder.validate_sequence(true);
-            encoder.write_header()
-        };
-        match start() {
-            Ok(writer) => Ok(Animation {
-                writer,
-                file,
-                bytes: Vec::new(),
-            }),
-            Err(error) => Err(file.error(error.into())),
+        match AnimationWriter::new(output, size, frames) {
+            Ok(writer) => Ok(Animation { writer, file }),
+            Err(error) => Err(file.error(error)),
         }
     }
 
-    /// Adds the next frame, as [`display_byte`] shows it.
+    /// Adds the next frame, as [`display_byte`](super::display_byte) shows it.
     ///
     /// # Errors
     /// [`SaveError`] where the file cannot be written, `image` is of another size, or all frames
     /// are there already.
     pub fn push(&mut self, image: &Image) -> Result<(), SaveError> {
-        self.write(image).map_err(|error| self.file.error(error))
-    }
-
-    /// The encoder takes an animation's frames whole, not row by row as a single picture.
-    fn write(&mut self, image: &Image) -> io::Result<()> {
-        self.bytes.clear();
-        memory::reserve(&mut self.bytes, image.samples().len())?;
-        for row in image.rows_from_top() {
-            self.bytes.extend(row.iter().copied().map(display_byte));
-        }
-        Ok(self.writer.write_image_data(&self.bytes)?)
+        let pushed = self.writer.push(image);
+        pushed.map_err(|error| self.file.error(error))
     }
 
     /// Ends the animation and gives the file its name.
@@ -82,8 +111,7 @@ impl Animation {
     /// # Errors
     /// [`SaveError`] where the file cannot be written, or frames are missing.
     pub fn finish(self) -> Result<(), SaveError> {
-        let written = self.writer.finish().map_err(EncodingError::into);
-        self.file.finish(written)
+        self.file.finish(self.writer.finish())
     }
 }
 

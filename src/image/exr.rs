@@ -1,6 +1,6 @@
 //! OpenEXR: three channels of 32-bit floats, every sample bit for bit.
 
-use std::io;
+use std::io::{self, Seek, Write};
 
 use ::exr::error::Error;
 use ::exr::image::write::WritableImage;
@@ -8,11 +8,10 @@ use ::exr::image::{Encoding, Image as Part, SpecificChannels};
 use ::exr::math::Vec2;
 
 use super::Image;
-use super::whole_file::Output;
 
 /// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib,
 /// rows in order.
-pub(super) fn write(image: &Image, output: &mut Output) -> io::Result<()> {
+pub(super) fn write<W: Write + Seek>(image: &Image, output: &mut W) -> io::Result<()> {
     let size = image.size() as usize;
     let samples = image.samples();
     let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {

@@ -6,8 +6,7 @@ use std::io::{self, Write};
 
 use ::png::{BitDepth, ColorType, Encoder, EncodingError};
 
-use super::whole_file::Output;
-use super::{Image, display_byte};
+use super::Image;
 
 /// Bytes in an IDAT chunk: large enough that the 12 around each do not count.
 pub(crate) const CHUNK: usize = 1 << 16;
@@ -21,15 +20,10 @@ pub(crate) fn encoder<W: Write>(output: W, width: u32, height: u32) -> Encoder<'
 }
 
 /// Writes the picture row by row: a second copy of a large one would not fit beside it.
-pub(super) fn write(image: &Image, output: &mut Output) -> io::Result<()> {
+pub(super) fn write<W: Write>(image: &Image, output: &mut W) -> io::Result<()> {
     let mut writer = encoder(output, image.size(), image.size()).write_header()?;
     let mut stream = writer.stream_writer_with_size(CHUNK)?;
-    let mut bytes = Vec::new();
-    for row in image.rows_from_top() {
-        bytes.clear();
-        bytes.extend(row.iter().copied().map(display_byte));
-        stream.write_all(&bytes)?;
-    }
+    image.write_rgb24(&mut stream)?;
     stream.finish()?;
     writer.finish().map_err(EncodingError::into)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::whole_file::WholeFile;
+use super::whole_file::{Output, WholeFile};
 use super::{Format, Image, SaveError, exr, png};
 
 impl Image {
@@ -17,8 +17,8 @@ impl Image {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
         let write = match Format::of(path)? {
-            Format::Png => png::write,
-            Format::Exr => exr::write,
+            Format::Png => png::write::<Output>,
+            Format::Exr => exr::write::<Output>,
             Format::Apng => return Err(SaveError::Animation(path.to_owned())),
         };
         WholeFile::write(path, |output| write(self, output))
