@@ -129,6 +129,8 @@ pub(crate) enum Failure {
     TooManyWrong(String),
     #[error("standard output cannot be written: {0}: send it elsewhere")]
     StandardOutput(io::Error),
+    #[error("a terminal shows no pictures: send standard output to a file or to a program")]
+    Terminal,
 }
 
 /// The first and the last pixel of a data window of `size` × `size` pixels, from the upper left.

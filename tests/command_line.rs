@@ -229,6 +229,13 @@ fn wrong_usage_is_status_2_and_writes_nothing() {
         "capture --stage 6 -o png",
         "capture --stage 6 -o .png",
         "capture --stage 6 -o ",
+        "capture --stage 6 -o -",
+        "capture --stage 6 -o - --format jpeg",
+        "capture --stage 6 -o - --format apng",
+        "capture --stage 6 -o - --format png --frames 0..1",
+        "capture --stage 6 -o - --format exr --frames 0..1",
+        "capture --stage 6 -o - --format apng --frames 0..1073741824",
+        "capture --stage 6 -o a.png --format png",
         // Told before the scene is looked for.
         "capture --stage 6 --scene missing.toml -o a.jpeg",
         "view --speed 1 --step 1",
@@ -383,6 +390,80 @@ fn a_new_file_has_the_permissions_of_any_new_file() {
             assert_eq!(succeeded(&output, name), "");
             let metadata = fs::metadata(folder.path().join(name)).unwrap();
             assert_eq!(metadata.permissions().mode() & 0o777, mode, "{name}");
+        }
+    }
+}
+
+#[test]
+fn standard_output_gets_the_bytes_of_the_file() {
+    let folder = folder();
+    let run = |line: &str| {
+        let line = format!("capture --stage 7 --size 33 --through none {line}");
+        let output = program(&folder, &line).output().unwrap();
+        assert_eq!(text(&output.stderr), "", "{line}");
+        assert_eq!(output.status.code(), Some(0), "{line}");
+        output.stdout
+    };
+    for (format, frames) in [
+        ("png", "--frame 4"),
+        ("exr", "--alpha -0.5"),
+        ("apng", "--frames 9..11"),
+    ] {
+        let bytes = run(&format!("{frames} -o - --format {format}"));
+        run(&format!("{frames} -o a.{format}"));
+        assert!(
+            bytes == self::bytes(&folder, &format!("a.{format}")),
+            "{format}"
+        );
+    }
+    let one = run("--frame 4 -o - --format rgb24");
+    assert!(one == displayed(&traced(7, frame_angle(4), 33)));
+    let frames = run("--frames 19..22 -o - --format rgb24");
+    let expected = (19..=22).flat_map(|frame| displayed(&traced(7, frame_angle(frame), 33)));
+    assert!(frames.into_iter().eq(expected));
+    assert_eq!(names(&folder), ["a.apng", "a.exr", "a.png"]);
+}
+
+/// How standard output is sent pictures.
+const STREAMS: [&str; 4] = [
+    "--format png",
+    "--format exr",
+    "--frames 0..999999 --format apng",
+    "--frames 0..999999 --format rgb24",
+];
+
+#[test]
+fn a_capture_into_a_closed_pipe_ends() {
+    for stream in STREAMS {
+        let line = format!("capture --stage 7 --size 200 --through none -o - {stream}");
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = program(&folder(), &line).stdout(writer).output().unwrap();
+        assert_eq!(succeeded(&output, &line), "");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_that_standard_output_cannot_take_is_a_failure() {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    let terminal = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&terminal).unwrap();
+    unlockpt(&terminal).unwrap();
+    let name = ptsname(&terminal, Vec::new())
+        .unwrap()
+        .into_string()
+        .unwrap();
+    for stream in STREAMS {
+        for (device, said) in [
+            ("/dev/full", "standard output cannot be written: "),
+            (&*name, "a terminal shows no pictures: "),
+        ] {
+            let device = File::options().read(true).write(true).open(device).unwrap();
+            let line = format!("capture --stage 7 --size 200 --through none -o - {stream}");
+            let output = program(&folder(), &line).stdout(device).output().unwrap();
+            let message = failed(&output, &line);
+            assert!(message.contains(said), "{message}");
         }
     }
 }

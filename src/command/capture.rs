@@ -1,5 +1,7 @@
 //! `firsthit capture`: pictures into files, without a window.
 
+mod job;
+
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -8,7 +10,7 @@ use std::time::Duration;
 
 use clap::Args;
 use firsthit::camera::frame_angle;
-use firsthit::image::{Animation, Format};
+use firsthit::image::{Animation, AnimationWriter};
 use firsthit::tracer::Progress;
 use firsthit::{Image, Scene, Stage};
 use indicatif::{ProgressBar, ProgressFinish};
@@ -17,6 +19,8 @@ use super::Failure;
 use super::arguments::{AngleArguments, PictureArguments, ProgramArguments, frames, stage};
 use super::maker::Maker;
 use super::round_trip::{RoundTrip, Through};
+use super::streams::{StandardOutput, refuse_terminal};
+use job::{Job, Stream, StreamFormat, count};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -37,75 +41,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "WAY", value_enum)]
     through: Option<Through>,
     /// The file to write: .png (8 bits, as displayed), .exr (every float bit for bit), .apng (an
-    /// animation of --frames); with --frames, {} in the name of a .png or .exr becomes the
-    /// frame's number
+    /// animation of --frames), - for standard output; with --frames, {} in the name of a .png or
+    /// .exr becomes the frame's number
     #[arg(short, long, value_name = "PATH")]
     output: PathBuf,
-}
-
-/// What is to be written.
-enum Job {
-    Picture {
-        alpha: f64,
-        path: PathBuf,
-    },
-    /// Each frame into a file of its own, named by `pattern` with the frame's number for `{}`.
-    Pictures {
-        frames: RangeInclusive<u64>,
-        pattern: String,
-    },
-    Animation {
-        frames: RangeInclusive<u64>,
-        path: PathBuf,
-    },
-}
-
-impl Job {
-    /// What the arguments ask for; wrong usage where they do not fit each other.
-    fn new(arguments: &Arguments) -> Result<Job, clap::Error> {
-        let path = arguments.output.clone();
-        let format = Format::of(&path).map_err(wrong)?;
-        let has_place = path
-            .as_os_str()
-            .as_encoded_bytes()
-            .windows(2)
-            .any(|two| two == b"{}");
-        let shown = path.display();
-        match (format, arguments.frames.clone()) {
-            (Format::Apng, None) => Err(wrong(format!(
-                "{shown}: an .apng holds an animation: give --frames A..B, or choose .png or .exr"
-            ))),
-            (Format::Apng, Some(_)) if has_place => Err(wrong(format!(
-                "{shown}: an .apng holds all frames: leave {{}} out of its name"
-            ))),
-            (Format::Apng, Some(frames)) if count(&frames) > Animation::MAX_FRAMES => {
-                Err(wrong(format!(
-                    "{shown}: an .apng holds at most {} frames: give fewer, or choose .png or .exr",
-                    Animation::MAX_FRAMES
-                )))
-            }
-            (Format::Apng, Some(frames)) => Ok(Job::Animation { frames, path }),
-            (Format::Png | Format::Exr, None) if has_place => Err(wrong(format!(
-                "{shown}: {{}} stands for the number of one frame of many: give --frames A..B, or leave {{}} out"
-            ))),
-            (Format::Png | Format::Exr, None) => {
-                let alpha = arguments.angle.alpha();
-                Ok(Job::Picture { alpha, path })
-            }
-            (Format::Png | Format::Exr, Some(_)) if !has_place => Err(wrong(format!(
-                "{shown}: with --frames the name needs {{}}, which becomes the frame's number, as in frame-{{}}.png"
-            ))),
-            (Format::Png | Format::Exr, Some(frames)) => {
-                match path.into_os_string().into_string() {
-                    Ok(pattern) => Ok(Job::Pictures { frames, pattern }),
-                    Err(path) => Err(wrong(format!(
-                        "{}: with --frames the name must be UTF-8",
-                        path.display()
-                    ))),
-                }
-            }
-        }
-    }
+    /// What standard output gets with -o -
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    format: Option<StreamFormat>,
 }
 
 fn wrong(message: impl std::fmt::Display) -> clap::Error {
@@ -133,6 +75,14 @@ impl Capture {
         Ok(&self.image)
     }
 
+    /// The picture of a capture of one, after its round trip.
+    fn single_picture(&mut self, alpha: f64) -> Result<&Image, Failure> {
+        let size = self.image.size();
+        while_watched(size, self.maker.progress(), || self.make(alpha))?;
+        self.maker.finish()?;
+        self.sent()
+    }
+
     /// The picture of one frame after its round trip. With the last of all `frames` the maker is
     /// finished.
     fn picture(&mut self, frame: u64, frames: &RangeInclusive<u64>) -> Result<&Image, Failure> {
@@ -141,6 +91,34 @@ impl Capture {
             self.maker.finish()?;
         }
         self.sent()
+    }
+
+    /// Writes pictures into standard output.
+    fn stream(&mut self, stream: Stream, output: &mut StandardOutput) -> Result<(), Failure> {
+        match stream {
+            Stream::Picture { alpha, write } => {
+                let picture = self.single_picture(alpha)?;
+                write(picture, output).map_err(Failure::StandardOutput)?;
+            }
+            Stream::Animation { frames } => {
+                let (size, count) = (self.image.size(), count(&frames));
+                let mut animation =
+                    AnimationWriter::new(output, size, count).map_err(Failure::StandardOutput)?;
+                for frame in with_progress(frames.clone()) {
+                    let picture = self.picture(frame, &frames)?;
+                    animation.push(picture).map_err(Failure::StandardOutput)?;
+                }
+                animation.finish().map_err(Failure::StandardOutput)?;
+            }
+            Stream::Bytes { frames } => {
+                for frame in with_progress(frames.clone()) {
+                    let picture = self.picture(frame, &frames)?;
+                    let written = picture.write_rgb24(output);
+                    written.map_err(Failure::StandardOutput)?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -151,6 +129,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = "a picture is made by one of the two: give --kernel or --program";
         return Err(wrong(message).into());
     }
+    if let Job::Stream(_) = job {
+        // Before a minute of tracing rather than after it.
+        refuse_terminal()?;
+    }
     let size = picture.size;
     let mut capture = Capture {
         scene: picture.scene()?,
@@ -160,11 +142,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         round_trip: RoundTrip::open(arguments.through, size)?,
     };
     match job {
-        Job::Picture { alpha, path } => {
-            while_watched(size, capture.maker.progress(), || capture.make(alpha))?;
-            capture.maker.finish()?;
-            capture.sent()?.save(path)?;
-        }
+        Job::Picture { alpha, path } => capture.single_picture(alpha)?.save(path)?,
         Job::Pictures { frames, pattern } => {
             let digits = frames.end().to_string().len();
             for frame in with_progress(frames.clone()) {
@@ -179,6 +157,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             animation.finish()?;
         }
+        Job::Stream(stream) => {
+            let mut output = StandardOutput::new();
+            let written = capture.stream(stream, &mut output);
+            output.finish(written)?;
+        }
     }
     // Said last: where the capture fails, one line says why, and no other.
     let notes = [capture.maker.note(), capture.round_trip.note()];
@@ -186,11 +169,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         super::say(&note);
     }
     Ok(())
-}
-
-/// The number of frames, or the largest number where that is one less.
-fn count(frames: &RangeInclusive<u64>) -> u64 {
-    (frames.end() - frames.start()).saturating_add(1)
 }
 
 /// How often the progress bar of a picture is updated; most pictures are done before the first
