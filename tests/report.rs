@@ -389,6 +389,23 @@ fn the_plot_is_xml_and_shows_every_kernel_and_every_group() {
 }
 
 #[test]
+fn standard_output_gets_the_json_or_the_plot_in_place_of_the_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "--size 2 --frames 0..0 --threads 1 --kernel double";
+    let text = report(&folder, &format!("{line} --json -"));
+    let value: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(value["version"], 1);
+    // What is measured last is in it.
+    assert!(!value["pipeline"].as_array().unwrap().is_empty());
+    let text = report(&folder, &format!("{line} --plot -"));
+    assert!(text.contains("Error against time"), "{text}");
+    roxmltree::Document::parse(&text).unwrap();
+    let message = failed(&folder, "--plot - --json -", 2);
+    assert!(message.contains("two files"), "{message}");
+    assert!(is_empty(&folder));
+}
+
+#[test]
 fn a_scene_that_a_kernel_refuses_is_a_row_that_says_so() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("s.toml"), "background = [0.5, 0.5, 0.5]").unwrap();

@@ -55,10 +55,10 @@ pub(crate) struct Arguments {
     /// The number of spheres of a crowd to be timed too; several with commas between them
     #[arg(long = "crowd", value_name = "N,...", value_delimiter = ',', value_parser = value_parser!(u16).range(1..=i64::from(MAX_CROWD)))]
     crowds: Vec<u16>,
-    /// A file to write the report to, as JSON
+    /// A file to write the report to, as JSON; - for standard output, in place of the tables
     #[arg(long, value_name = "PATH")]
     json: Option<PathBuf>,
-    /// A file to draw error against time into, as SVG
+    /// A file to draw error against time into, as SVG; - for standard output, in place of the tables
     #[arg(long, value_name = "PATH.svg")]
     plot: Option<PathBuf>,
 }
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             .extension()
             .is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
         let message = match &arguments.json {
-            _ if !is_svg => "the plot is an .svg",
+            _ if !is_svg && !is_standard(path) => "the plot is an .svg",
             Some(json) if json == path => "the plot and the JSON need two files",
             _ => "",
         };
@@ -100,9 +100,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let request = request(arguments)?;
-    for path in [&arguments.json, &arguments.plot].into_iter().flatten() {
-        report::can_save(path)?;
-    }
+    let paths = [&arguments.json, &arguments.plot];
+    let paths = paths.into_iter().flatten();
+    // Standard output holds either a file or the tables.
+    let shows_tables = !paths.clone().any(|path| is_standard(path));
+    paths
+        .filter(|path| !is_standard(path))
+        .try_for_each(report::can_save)?;
     let programs = arguments.programs.start()?.into_iter();
     let renderers = programs.map(|program| -> Box<dyn Render + Send> { Box::new(program) });
     let mut renderers: Vec<_> = renderers.collect();
@@ -118,32 +122,42 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     );
     bar.finish_and_clear();
     let mut report = report?;
-    let save = |report: &Report| match &arguments.json {
-        Some(path) => report::save(&report.json(), path),
+    let show = |table: &str| match shows_tables {
+        true => print(table),
+        false => Ok(()),
+    };
+    let save_json = |report: &Report| match &arguments.json {
+        Some(path) => save(&report.json(), path),
         None => Ok(()),
     };
     // What cannot be shown in one place is still shown in the others.
-    let shown = print(&report.table());
+    let shown = show(&report.table());
     let plotted = match &arguments.plot {
         Some(path) => plot(&report, path),
         None => Ok(()),
     };
-    let saved = save(&report);
     if let Some(most) = arguments.max_wrong {
+        let saved = save_json(&report);
         shown?;
         plotted?;
         saved?;
         return grade(&report, most);
     }
+    // A file has the report before drivers are called, which may hang; standard output gets it once.
+    let saved = match &arguments.json {
+        Some(path) if is_standard(path) => Ok(()),
+        _ => save_json(&report),
+    };
     let mut watchdog = None;
-    report.measure_pipelines(&request, &mut |waits| {
+    let measured = report.measure_pipelines(&request, &mut |waits| {
         watchdog = waits.then(|| Watchdog::for_driver(request.size));
-    })?;
+    });
     shown?;
-    let all_shown = print(&report.pipeline_table());
+    let all_shown = show(&report.pipeline_table());
     plotted?;
     saved?;
-    save(&report)?;
+    save_json(&report)?;
+    measured?;
     all_shown
 }
 
@@ -168,7 +182,15 @@ fn grade(report: &Report, most: u64) -> Result<(), Failure> {
 }
 
 fn plot(report: &Report, path: &Path) -> Result<(), Failure> {
-    Ok(report::save(&report.plot()?, path)?)
+    save(&report.plot()?, path)
+}
+
+/// Writes a text into the file `path`, or into standard output.
+fn save(text: &str, path: &Path) -> Result<(), Failure> {
+    match is_standard(path) {
+        true => print(text),
+        false => Ok(report::save(text, path)?),
+    }
 }
 
 fn request(arguments: &Arguments) -> Result<Request, Failure> {
