@@ -130,6 +130,24 @@ fn an_apng_plays_its_frames_without_end() {
 }
 
 #[test]
+fn an_apng_plays_as_many_frames_a_second_as_asked_for() {
+    let folder = folder();
+    for fps in [1, 24, 65535] {
+        let line = format!("--stage 2 --frames 0..1 --size 5 --through none --fps {fps}");
+        done(&folder, &format!("capture {line} -o a.apng"));
+        let mut reader = png_reader(&folder.path().join("a.apng"));
+        for _ in 0..2 {
+            next_frame(&mut reader);
+            let control = reader.info().frame_control.unwrap();
+            assert_eq!((control.delay_num, control.delay_den), (1, fps));
+        }
+        let line = format!("capture {line} -o - --format apng");
+        let output = program(&folder, &line).output().unwrap();
+        assert!(output.stdout == bytes(&folder, "a.apng"), "{fps}");
+    }
+}
+
+#[test]
 fn each_frame_is_named_with_as_many_digits_as_the_last() {
     let folder = folder();
     let line = "capture --stage 6 --size 9 --through none --frames";
@@ -229,6 +247,11 @@ fn wrong_usage_is_status_2_and_writes_nothing() {
         "capture --stage 6 -o png",
         "capture --stage 6 -o .png",
         "capture --stage 6 -o ",
+        "capture --stage 6 --fps 5 -o a.png",
+        "capture --stage 6 --fps 5 --frames 0..1 -o a{}.png",
+        "capture --stage 6 --fps 5 --frames 0..1 -o - --format rgb24",
+        "capture --stage 6 --fps 0 --frames 0..1 -o a.apng",
+        "capture --stage 6 --fps 65536 --frames 0..1 -o a.apng",
         "capture --stage 6 -o -",
         "capture --stage 6 -o - --format jpeg",
         "capture --stage 6 -o - --format apng",

@@ -1,6 +1,7 @@
 //! Promise: a file of a picture keeps what its format can hold.
 
 use std::fs;
+use std::num::NonZeroU16;
 use std::path::Path;
 
 use exr::image::write::WritableImage;
@@ -114,8 +115,8 @@ fn an_output_gets_the_bytes_of_the_file() {
         assert!(bytes == expected, "{size}");
 
         let mut apng = Vec::new();
-        let mut writer = AnimationWriter::new(&mut apng, size, 2).unwrap();
-        let mut animation = Animation::create(path("a.apng"), size, 2).unwrap();
+        let mut writer = AnimationWriter::new(&mut apng, size, 2, NonZeroU16::MAX).unwrap();
+        let mut animation = Animation::create(path("a.apng"), size, 2, NonZeroU16::MAX).unwrap();
         for frame in [&image, &Image::new(size).unwrap()] {
             writer.push(frame).unwrap();
             animation.push(frame).unwrap();
@@ -125,7 +126,7 @@ fn an_output_gets_the_bytes_of_the_file() {
         assert!(fs::read(path("a.apng")).unwrap() == apng, "{size}");
     }
     for frames in [0, Animation::MAX_FRAMES + 1] {
-        assert!(AnimationWriter::new(Vec::new(), 1, frames).is_err());
+        assert!(AnimationWriter::new(Vec::new(), 1, frames, NonZeroU16::MIN).is_err());
     }
 }
 

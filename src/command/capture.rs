@@ -2,6 +2,7 @@
 
 mod job;
 
+use std::num::NonZeroU16;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -22,7 +23,12 @@ use super::round_trip::{RoundTrip, Through};
 use super::streams::{StandardOutput, refuse_terminal};
 use job::{Job, Stream, StreamFormat, count};
 
+/// How ffmpeg makes a film of the frames.
+const EXAMPLE: &str = "A film, by another program:
+  firsthit capture --stage 7 --frames 0..20 -o - --format rgb24 | ffmpeg -f rawvideo -pix_fmt rgb24 -s 500x500 -r 5 -i - -pix_fmt yuv420p film.mp4";
+
 #[derive(Args)]
+#[command(after_help = EXAMPLE)]
 pub(crate) struct Arguments {
     /// The stage, 1 to 7
     #[arg(long, value_name = "STAGE", value_parser = stage)]
@@ -48,6 +54,9 @@ pub(crate) struct Arguments {
     /// What standard output gets with -o -
     #[arg(long, value_name = "FORMAT", value_enum)]
     format: Option<StreamFormat>,
+    /// The frames a second of an animation; 5 if not given
+    #[arg(long, value_name = "N")]
+    fps: Option<NonZeroU16>,
 }
 
 fn wrong(message: impl std::fmt::Display) -> clap::Error {
@@ -100,10 +109,10 @@ impl Capture {
                 let picture = self.single_picture(alpha)?;
                 write(picture, output).map_err(Failure::StandardOutput)?;
             }
-            Stream::Animation { frames } => {
+            Stream::Animation { frames, fps } => {
                 let (size, count) = (self.image.size(), count(&frames));
-                let mut animation =
-                    AnimationWriter::new(output, size, count).map_err(Failure::StandardOutput)?;
+                let mut animation = AnimationWriter::new(output, size, count, fps)
+                    .map_err(Failure::StandardOutput)?;
                 for frame in with_progress(frames.clone()) {
                     let picture = self.picture(frame, &frames)?;
                     animation.push(picture).map_err(Failure::StandardOutput)?;
@@ -150,8 +159,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 capture.picture(frame, &frames)?.save(path)?;
             }
         }
-        Job::Animation { frames, path } => {
-            let mut animation = Animation::create(path, size, count(&frames))?;
+        Job::Animation { frames, fps, path } => {
+            let mut animation = Animation::create(path, size, count(&frames), fps)?;
             for frame in with_progress(frames.clone()) {
                 animation.push(capture.picture(frame, &frames)?)?;
             }

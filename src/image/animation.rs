@@ -1,6 +1,7 @@
-//! An animated PNG: one picture after another, 200 ms each, without end.
+//! An animated PNG: one picture after another, as many a second, without end.
 
 use std::io::{self, Write};
+use std::num::NonZeroU16;
 use std::path::Path;
 
 use ::png::{EncodingError, Writer};
@@ -10,9 +11,6 @@ use super::whole_file::{Output, WholeFile};
 use super::{Image, SaveError, png};
 use crate::memory;
 
-/// A frame stays for 1/5 s.
-const DELAY: (u16, u16) = (1, 5);
-
 /// An animated PNG on its way into any output: frames are given one by one.
 pub struct AnimationWriter<W: Write> {
     encoder: Writer<W>,
@@ -20,15 +18,20 @@ pub struct AnimationWriter<W: Write> {
 }
 
 impl<W: Write> AnimationWriter<W> {
-    /// Starts an animation of `frames` frames, `size` × `size` pixels each.
+    /// Starts an animation of `frames` frames, `size` × `size` pixels each, `fps` frames a second.
     ///
     /// # Errors
     /// Those of `output`; `InvalidInput` unless there are 1 to [`Animation::MAX_FRAMES`] frames.
-    pub fn new(output: W, size: u32, frames: u64) -> io::Result<AnimationWriter<W>> {
+    pub fn new(
+        output: W,
+        size: u32,
+        frames: u64,
+        fps: NonZeroU16,
+    ) -> io::Result<AnimationWriter<W>> {
         let count = count(frames).ok_or(io::ErrorKind::InvalidInput)?;
         let mut encoder = png::encoder(output, size, size);
         encoder.set_animated(count, 0)?;
-        encoder.set_frame_delay(DELAY.0, DELAY.1)?;
+        encoder.set_frame_delay(1, fps.get())?;
         encoder.validate_sequence(true);
         Ok(AnimationWriter {
             encoder: encoder.write_header()?,
@@ -77,20 +80,25 @@ impl Animation {
     /// The most frames that the format can number.
     pub const MAX_FRAMES: u64 = MAX_FRAMES;
 
-    /// Starts an animation of `frames` frames, `size` × `size` pixels each, to be named `path`,
-    /// whatever its extension.
+    /// Starts an animation of `frames` frames, `size` × `size` pixels each, `fps` frames a second,
+    /// to be named `path`, whatever its extension.
     ///
     /// # Errors
     /// [`SaveError`] unless there are 1 to [`Animation::MAX_FRAMES`] frames, and where the file
     /// cannot be written.
-    pub fn create(path: impl AsRef<Path>, size: u32, frames: u64) -> Result<Animation, SaveError> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        size: u32,
+        frames: u64,
+        fps: NonZeroU16,
+    ) -> Result<Animation, SaveError> {
         let path = path.as_ref();
         if count(frames).is_none() {
             let path = path.to_owned();
             return Err(SaveError::Frames { path, frames });
         }
         let (file, output) = WholeFile::create(path)?;
-        match AnimationWriter::new(output, size, frames) {
+        match AnimationWriter::new(output, size, frames, fps) {
             Ok(writer) => Ok(Animation { writer, file }),
             Err(error) => Err(file.error(error)),
         }
@@ -125,7 +133,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.apng");
         let (right, wrong) = (Image::new(3).unwrap(), Image::new(4).unwrap());
-        let start = || Animation::create(&path, 3, 2).unwrap();
+        let start = || Animation::create(&path, 3, 2, NonZeroU16::MIN).unwrap();
         let is_empty = || folder.path().read_dir().unwrap().next().is_none();
 
         drop(start());
@@ -146,7 +154,7 @@ mod tests {
 
         for frames in [0, Animation::MAX_FRAMES + 1, u64::MAX] {
             assert!(matches!(
-                Animation::create(&path, 3, frames),
+                Animation::create(&path, 3, frames, NonZeroU16::MIN),
                 Err(SaveError::Frames { .. })
             ));
         }

@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::io;
+use std::num::NonZeroU16;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -26,6 +27,9 @@ pub(super) enum StreamFormat {
     Rgb24,
 }
 
+/// The frames a second of an animation, if nothing is said.
+const FPS: NonZeroU16 = NonZeroU16::new(5).unwrap();
+
 /// Writes a picture into standard output.
 pub(super) type WritePicture = fn(&Image, &mut StandardOutput) -> io::Result<()>;
 
@@ -42,6 +46,7 @@ pub(super) enum Job {
     },
     Animation {
         frames: RangeInclusive<u64>,
+        fps: NonZeroU16,
         path: PathBuf,
     },
     Stream(Stream),
@@ -55,6 +60,7 @@ pub(super) enum Stream {
     },
     Animation {
         frames: RangeInclusive<u64>,
+        fps: NonZeroU16,
     },
     /// The bytes of each frame.
     Bytes {
@@ -65,6 +71,21 @@ pub(super) enum Stream {
 impl Job {
     /// What the arguments ask for; wrong usage where they do not fit each other.
     pub(super) fn new(arguments: &Arguments) -> Result<Job, clap::Error> {
+        let job = Job::of_any_speed(arguments)?;
+        let is_animation = matches!(
+            job,
+            Job::Animation { .. } | Job::Stream(Stream::Animation { .. })
+        );
+        match arguments.fps {
+            Some(_) if !is_animation => Err(wrong(
+                "--fps: only an animation plays at a speed: leave --fps out, or choose .apng",
+            )),
+            _ => Ok(job),
+        }
+    }
+
+    /// The same, whether or not `--fps` fits it.
+    fn of_any_speed(arguments: &Arguments) -> Result<Job, clap::Error> {
         let path = arguments.output.clone();
         if is_standard(&path) {
             return Ok(Job::Stream(Stream::new(arguments)?));
@@ -91,7 +112,8 @@ impl Job {
             ))),
             (Format::Apng, Some(frames)) => {
                 check_count(&frames, shown)?;
-                Ok(Job::Animation { frames, path })
+                let fps = arguments.fps.unwrap_or(FPS);
+                Ok(Job::Animation { frames, fps, path })
             }
             (Format::Png | Format::Exr, None) if has_place => Err(wrong(format!(
                 "{shown}: {{}} stands for the number of one frame of many: give --frames A..B, or leave {{}} out"
@@ -132,7 +154,8 @@ impl Stream {
             }
             (StreamFormat::Apng, Some(frames)) => {
                 check_count(&frames, "--format apng")?;
-                return Ok(Stream::Animation { frames });
+                let fps = arguments.fps.unwrap_or(FPS);
+                return Ok(Stream::Animation { frames, fps });
             }
             (StreamFormat::Rgb24, Some(frames)) => return Ok(Stream::Bytes { frames }),
             (StreamFormat::Png | StreamFormat::Exr, Some(_)) => {
