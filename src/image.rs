@@ -7,6 +7,7 @@ mod format;
 mod load;
 pub(crate) mod png;
 mod save;
+mod srgb;
 mod stream;
 mod unfinished;
 pub(crate) mod whole_file;
@@ -19,6 +20,7 @@ pub use animation::{Animation, AnimationWriter};
 pub use error::SaveError;
 pub use format::Format;
 pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};
+pub use srgb::decode_srgb;
 pub use unfinished::abandon_unfinished;
 
 /// The largest number of pixels along a side.

@@ -9,7 +9,7 @@ use std::process::{Output, Stdio};
 
 use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
-use firsthit::image::display_byte;
+use firsthit::image::{decode_srgb, display_byte};
 use firsthit::screen::{Backend, Offscreen};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer, scene};
 use tempfile::TempDir;
@@ -103,6 +103,21 @@ fn an_exr_holds_every_sample() {
         Compression::Uncompressed
     ));
     assert_eq!(names(&folder), ["a.exr"]);
+}
+
+#[test]
+fn a_linear_exr_holds_what_srgb_stands_for() {
+    let folder = folder();
+    let line = "capture --stage 6 --size 37 --through none --linear";
+    done(&folder, &format!("{line} --frames 3..4 -o {{}}.exr"));
+    done(&folder, &format!("{line} --frame 3 -o a.exr"));
+    for (name, frame) in [("3.exr", 3), ("4.exr", 4), ("a.exr", 3)] {
+        let samples = traced(6, frame_angle(frame), 37);
+        let decoded = samples.samples().iter().copied().map(decode_srgb);
+        let expected: Vec<u32> = decoded.map(f32::to_bits).collect();
+        assert_eq!(exr_bits(&folder.path().join(name)), expected, "{name}");
+    }
+    assert!(printed(&folder, "capture --help").contains("--linear"));
 }
 
 #[test]
@@ -247,6 +262,9 @@ fn wrong_usage_is_status_2_and_writes_nothing() {
         "capture --stage 6 -o png",
         "capture --stage 6 -o .png",
         "capture --stage 6 -o ",
+        "capture --stage 6 --linear -o a.png",
+        "capture --stage 6 --linear --frames 0..1 -o a.apng",
+        "capture --stage 6 --linear -o - --format rgb24",
         "capture --stage 6 --fps 5 -o a.png",
         "capture --stage 6 --fps 5 --frames 0..1 -o a{}.png",
         "capture --stage 6 --fps 5 --frames 0..1 -o - --format rgb24",

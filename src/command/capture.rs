@@ -54,6 +54,11 @@ pub(crate) struct Arguments {
     /// What standard output gets with -o -
     #[arg(long, value_name = "FORMAT", value_enum)]
     format: Option<StreamFormat>,
+    /// Write light instead of the floats as they are, for viewers of EXR files, which encode it for
+    /// the display: each float decoded by the curve of sRGB and rounded correctly, so that the
+    /// picture looks there as in this program's window. `compare` takes no EXR for such a one
+    #[arg(long)]
+    linear: bool,
     /// The frames a second of an animation; 5 if not given
     #[arg(long, value_name = "N")]
     fps: Option<NonZeroU16>,
@@ -70,6 +75,8 @@ struct Capture {
     maker: Maker,
     image: Image,
     round_trip: RoundTrip,
+    /// The picture is decoded by the curve of sRGB after its round trip.
+    linear: bool,
 }
 
 impl Capture {
@@ -78,9 +85,12 @@ impl Capture {
             .make(&self.scene, self.stage, alpha, &mut self.image)
     }
 
-    /// The picture after its round trip.
+    /// The picture that is written, after its round trip.
     fn sent(&mut self) -> Result<&Image, Failure> {
         self.round_trip.send(&self.image)?;
+        if self.linear {
+            self.image.decode_srgb();
+        }
         Ok(&self.image)
     }
 
@@ -149,6 +159,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         maker: Maker::new(picture, &arguments.program)?,
         image: Image::new(size)?,
         round_trip: RoundTrip::open(arguments.through, size)?,
+        linear: arguments.linear,
     };
     match job {
         Job::Picture { alpha, path } => capture.single_picture(alpha)?.save(path)?,

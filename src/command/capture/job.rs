@@ -71,21 +71,30 @@ pub(super) enum Stream {
 impl Job {
     /// What the arguments ask for; wrong usage where they do not fit each other.
     pub(super) fn new(arguments: &Arguments) -> Result<Job, clap::Error> {
-        let job = Job::of_any_speed(arguments)?;
+        let job = Job::of_output(arguments)?;
         let is_animation = matches!(
             job,
             Job::Animation { .. } | Job::Stream(Stream::Animation { .. })
         );
-        match arguments.fps {
-            Some(_) if !is_animation => Err(wrong(
+        if arguments.fps.is_some() && !is_animation {
+            return Err(wrong(
                 "--fps: only an animation plays at a speed: leave --fps out, or choose .apng",
-            )),
-            _ => Ok(job),
+            ));
         }
+        let is_exr = match arguments.format {
+            Some(format) => matches!(format, StreamFormat::Exr),
+            None => matches!(Format::of(&arguments.output), Ok(Format::Exr)),
+        };
+        if arguments.linear && !is_exr {
+            return Err(wrong(
+                "--linear: only an EXR holds light: leave --linear out, or choose .exr",
+            ));
+        }
+        Ok(job)
     }
 
-    /// The same, whether or not `--fps` fits it.
-    fn of_any_speed(arguments: &Arguments) -> Result<Job, clap::Error> {
+    /// The same, whether or not `--fps` and `--linear` fit it.
+    fn of_output(arguments: &Arguments) -> Result<Job, clap::Error> {
         let path = arguments.output.clone();
         if is_standard(&path) {
             return Ok(Job::Stream(Stream::new(arguments)?));
