@@ -53,7 +53,7 @@ fn an_exr_keeps_every_bit() {
 }
 
 #[test]
-fn a_png_holds_bytes_and_says_nothing_about_colour() {
+fn a_png_holds_bytes_and_says_that_they_are_srgb() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("hard.png");
     for size in [1, 3, 200] {
@@ -63,11 +63,13 @@ fn a_png_holds_bytes_and_says_nothing_about_colour() {
         let mut kinds = Vec::new();
         while let [a, b, c, d, tail @ ..] = rest {
             let length = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
-            kinds.push(tail[..4].to_vec());
+            let kind = &tail[..4];
+            assert!(kind != b"sRGB" || tail[4..4 + length] == [1]);
+            kinds.push(kind.to_vec());
             rest = &tail[4 + length + 4..];
         }
         kinds.dedup();
-        assert_eq!(kinds, [b"IHDR", b"IDAT", b"IEND"]);
+        assert_eq!(kinds, [b"IHDR", b"sRGB", b"IDAT", b"IEND"]);
     }
 }
 

@@ -1,10 +1,10 @@
 //! PNG: 8 bits a sample, the bytes that the display shows.
 //!
-//! No gamma, colour space or date is stored: as on the screen, the bytes are what they are.
+//! A chunk says that the bytes are sRGB, which is what a display takes them for. No date is stored.
 
 use std::io::{self, Write};
 
-use ::png::{BitDepth, ColorType, Encoder, EncodingError};
+use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 
 use super::Image;
 
@@ -16,6 +16,7 @@ pub(crate) fn encoder<W: Write>(output: W, width: u32, height: u32) -> Encoder<'
     let mut encoder = Encoder::new(output, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
+    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     encoder
 }
 
