@@ -522,6 +522,61 @@ fn a_file_that_is_there_is_replaced_whole() {
 
 #[cfg(unix)]
 #[test]
+fn a_replaced_file_keeps_its_mode() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    for mode in [0o600, 0o640, 0o666, 0o755] {
+        for (name, frames) in [("a.png", ""), ("a.exr", ""), ("a.apng", " --frames 0..1")] {
+            let path = folder.path().join(name);
+            fs::write(&path, "old").unwrap();
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            done(
+                &folder,
+                &format!("capture --stage 1 --size 4 --through none -o {name}{frames}"),
+            );
+            assert_ne!(bytes(&folder, name), b"old");
+            let metadata = fs::metadata(&path).unwrap();
+            assert_eq!(metadata.permissions().mode() & 0o7777, mode, "{name}");
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_followed_too() {
+    use std::os::unix::fs::symlink;
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("elsewhere")).unwrap();
+    symlink("elsewhere/link.png", at("link.png")).unwrap();
+    symlink("new.png", at("elsewhere/link.png")).unwrap();
+    symlink("missing/a.png", at("lost.png")).unwrap();
+    symlink("loop.png", at("loop.png")).unwrap();
+    let line = "capture --stage 6 --size 8 --through none -o";
+    done(&folder, &format!("{line} link.png"));
+    assert!(fs::metadata(at("elsewhere/new.png")).unwrap().is_file());
+    for (name, said) in [
+        ("lost.png", "lost.png: cannot be written: "),
+        ("loop.png", "loop.png: cannot be written: "),
+    ] {
+        let line = format!("{line} {name}");
+        let message = failed(&program(&folder, &line).output().unwrap(), name);
+        assert!(message.contains(said), "{message}");
+    }
+    for name in ["link.png", "elsewhere/link.png", "lost.png", "loop.png"] {
+        assert!(
+            fs::symlink_metadata(at(name)).unwrap().is_symlink(),
+            "{name}"
+        );
+    }
+    assert_eq!(
+        names(&folder),
+        ["elsewhere", "link.png", "loop.png", "lost.png"]
+    );
+}
+
+#[cfg(unix)]
+#[test]
 fn a_link_is_followed_but_what_is_no_file_stays() {
     use std::os::unix::fs::{FileTypeExt, symlink};
     use std::os::unix::net::UnixListener;

@@ -4,6 +4,8 @@
 //! the disk has it: whoever looks at the name finds the old file or the new one, never a part.
 
 use std::fs::{self, File};
+#[cfg(unix)]
+use std::fs::{Metadata, Permissions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -32,13 +34,19 @@ pub(crate) struct Output {
 type Failure = Arc<OnceLock<io::Error>>;
 
 impl WholeFile {
-    /// Starts the file that is to be named `path`, with the permissions that any new file gets.
+    /// Starts the file that is to be named `path`, with the permissions of the file that it
+    /// replaces, else with those that any new file gets.
     ///
-    /// A symbolic link is followed, and what it points to is replaced; one that points to nothing
-    /// is replaced itself.
+    /// A symbolic link is followed: what it points to is replaced, or made.
     pub(crate) fn create(path: &Path) -> Result<(WholeFile, Output), SaveError> {
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if let Ok(metadata) = fs::metadata(&target) {
+        let target = target(path);
+        let old = match fs::metadata(path) {
+            Err(reason) if reason.kind() != io::ErrorKind::NotFound => {
+                return Err(SaveError::write(path, reason));
+            }
+            old => old.ok(),
+        };
+        if let Some(metadata) = &old {
             // Renaming would put a file in the place of a device, and would not ask whether the old
             // file may be written.
             if !metadata.is_file() {
@@ -51,6 +59,10 @@ impl WholeFile {
         let folder = folder(&target);
         let create = || {
             let (unfinished, file) = Unfinished::create(folder)?;
+            #[cfg(unix)]
+            if let Some(metadata) = &old {
+                keep_mode(&file, metadata)?;
+            }
             Ok((unfinished, file.try_clone()?, file))
         };
         let (unfinished, output, file) =
@@ -136,6 +148,33 @@ impl Seek for Output {
         let sought = self.file.seek(position);
         self.watch(sought)
     }
+}
+
+/// Gives `file` the mode of an old one, but for what makes a program run as another user.
+#[cfg(unix)]
+fn keep_mode(file: &File, old: &Metadata) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt as _;
+    let mode = |metadata: &Metadata| metadata.permissions().mode() & 0o777;
+    // A file system without modes cannot set one, and all its files have the same.
+    if mode(&file.metadata()?) == mode(old) {
+        return Ok(());
+    }
+    file.set_permissions(Permissions::from_mode(mode(old)))
+}
+
+/// The most links to links that are followed, as Linux has it.
+const LINKS: usize = 40;
+
+/// What `path` points to, be it there or not; `path` itself where that is no symbolic link.
+fn target(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    for _ in 0..LINKS {
+        let Ok(link) = fs::read_link(&target) else {
+            break;
+        };
+        target = folder(&target).join(link);
+    }
+    target
 }
 
 /// The folder of a file.
