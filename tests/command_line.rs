@@ -734,11 +734,25 @@ fn names_need_not_be_text() {
     assert_eq!(succeeded(&output, line), "");
     assert!(folder.path().join(name).is_file());
 
-    // The frame's number is put into text only.
     let output = program(&folder, line)
-        .arg(OsStr::from_bytes(b"\xe9{}.png"))
-        .args(["--frames", "1..2"])
+        .arg(OsStr::from_bytes(b"\xe9{}\xff{}.png"))
+        .args(["--frames", "9..10"])
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(succeeded(&output, line), "");
+    for name in [&b"\xe909\xff09.png"[..], b"\xe910\xff10.png"] {
+        assert!(folder.path().join(OsStr::from_bytes(name)).is_file());
+    }
+
+    let scene = folder.path().join(OsStr::from_bytes(b"\xe9.toml"));
+    fs::write(&scene, "").unwrap();
+    let line = "capture --stage 1 --size 4 --through none -o a.png --scene";
+    let output = program(&folder, line).arg(&scene).output().unwrap();
+    assert_eq!(succeeded(&output, line), "");
+
+    let json = folder.path().join(OsStr::from_bytes(b"\xe9.json"));
+    let line = "report --size 2 --frames 0..0 --threads 1 --kernel double --json";
+    let output = program(&folder, line).arg(&json).output().unwrap();
+    succeeded(&output, line);
+    assert!(json.is_file());
 }

@@ -21,7 +21,7 @@ use super::arguments::{AngleArguments, PictureArguments, ProgramArguments, frame
 use super::maker::Maker;
 use super::round_trip::{RoundTrip, Through};
 use super::streams::{StandardOutput, refuse_terminal};
-use job::{Job, Stream, StreamFormat, count};
+use job::{Job, Stream, StreamFormat, count, numbered};
 
 /// How ffmpeg makes a film of the frames.
 const EXAMPLE: &str = "A film, by another program:
@@ -166,7 +166,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Job::Pictures { frames, pattern } => {
             let digits = frames.end().to_string().len();
             for frame in with_progress(frames.clone()) {
-                let path = pattern.replace("{}", &format!("{frame:0digits$}"));
+                let path = numbered(&pattern, &format!("{frame:0digits$}"));
                 capture.picture(frame, &frames)?.save(path)?;
             }
         }

@@ -1,5 +1,6 @@
 //! What a capture is asked to write.
 
+use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
 use std::io;
 use std::num::NonZeroU16;
@@ -42,7 +43,7 @@ pub(super) enum Job {
     /// Each frame into a file of its own, named by `pattern` with the frame's number for `{}`.
     Pictures {
         frames: RangeInclusive<u64>,
-        pattern: String,
+        pattern: OsString,
     },
     Animation {
         frames: RangeInclusive<u64>,
@@ -106,11 +107,7 @@ impl Job {
             )));
         }
         let format = Format::of(&path).map_err(wrong)?;
-        let has_place = path
-            .as_os_str()
-            .as_encoded_bytes()
-            .windows(2)
-            .any(|two| two == b"{}");
+        let has_place = place(path.as_os_str().as_encoded_bytes()).is_some();
         let shown = path.display();
         match (format, arguments.frames.clone()) {
             (Format::Apng, None) => Err(wrong(format!(
@@ -134,15 +131,10 @@ impl Job {
             (Format::Png | Format::Exr, Some(_)) if !has_place => Err(wrong(format!(
                 "{shown}: with --frames the name needs {{}}, which becomes the frame's number, as in frame-{{}}.png"
             ))),
-            (Format::Png | Format::Exr, Some(frames)) => {
-                match path.into_os_string().into_string() {
-                    Ok(pattern) => Ok(Job::Pictures { frames, pattern }),
-                    Err(path) => Err(wrong(format!(
-                        "{}: with --frames the name must be UTF-8",
-                        path.display()
-                    ))),
-                }
-            }
+            (Format::Png | Format::Exr, Some(frames)) => Ok(Job::Pictures {
+                frames,
+                pattern: path.into_os_string(),
+            }),
         }
     }
 }
@@ -195,4 +187,24 @@ fn check_count(frames: &RangeInclusive<u64>, what: impl Display) -> Result<(), c
 /// The number of frames, or the largest number where that is one less.
 pub(super) fn count(frames: &RangeInclusive<u64>) -> u64 {
     (frames.end() - frames.start()).saturating_add(1)
+}
+
+/// Where the first `{}` of a name is.
+fn place(name: &[u8]) -> Option<usize> {
+    name.windows(2).position(|two| two == b"{}")
+}
+
+/// `pattern` with `number` for each `{}`; the rest need not be text.
+pub(super) fn numbered(pattern: &OsStr, number: &str) -> OsString {
+    let mut name = OsString::new();
+    let mut rest = pattern.as_encoded_bytes();
+    // SAFETY: these are bytes of an OsStr, which is cut before and after the text `{}` only.
+    let os_str = |bytes| unsafe { OsStr::from_encoded_bytes_unchecked(bytes) };
+    while let Some(place) = place(rest) {
+        name.push(os_str(&rest[..place]));
+        name.push(number);
+        rest = &rest[place + 2..];
+    }
+    name.push(os_str(rest));
+    name
 }
