@@ -190,7 +190,8 @@ impl fmt::Display for Counts {
 ///
 /// # Errors
 /// [`ViewerError`] where no window can be opened, or the display goes away. Where an X server does,
-/// Xlib leaves no way back: a line on standard error, and the process ends with status 1.
+/// Xlib leaves no way back: a line on standard error, every [`Program`](crate::program::Program) is
+/// ended, and so is the process, with status 1.
 ///
 /// # Panics
 /// On macOS and Windows, where the calling thread is not the main thread.

@@ -9,6 +9,8 @@ use std::thread;
 
 use super::ViewerError;
 use super::library::load;
+use crate::image::abandon_unfinished;
+use crate::program::end_all;
 
 /// The X extensions that winit takes for granted.
 const EXTENSIONS: [&CStr; 3] = [c"RANDR", c"XInputExtension", c"XKEYBOARD"];
@@ -148,6 +150,9 @@ extern "C" fn server_died(_display: *mut c_void) -> c_int {
     DYING.call_once(|| {
         // Standard error may have died with the display.
         let _ = writeln!(io::stderr(), "firsthit: {}", ViewerError::Lost);
+        // The caller of `run`, who could see to it, is not returned to.
+        abandon_unfinished();
+        end_all();
         _exit(1)
     });
     0

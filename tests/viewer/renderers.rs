@@ -142,6 +142,38 @@ fn a_slow_program_keeps_nobody_waiting() {
 }
 
 #[test]
+fn the_death_of_the_server_leaves_no_program_running() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let temporary = folder.path().join("tmp");
+    fs::create_dir(&temporary).unwrap();
+    let number = folder.path().join("number");
+    let script = folder.path().join("deaf.sh");
+    let text = format!("echo $$ > '{}'; exec sleep 1000", number.display());
+    fs::write(&script, text).unwrap();
+    let command = format!("sh '{}'", script.display());
+    let arguments = ["view", "--kernel", "exact", "--size", "300", "--program"];
+    let environment = [("TMPDIR", temporary.to_str().unwrap())];
+    let mut session = Session::on(xvfb, &[&arguments[..], &[&command]].concat(), &environment);
+    let number = wait_for("the program", || {
+        let number = fs::read_to_string(&number).ok()?;
+        number.trim().parse::<u32>().ok()
+    });
+    // The command line of what has ended is empty, or gone.
+    let command_line = || fs::read(format!("/proc/{number}/cmdline")).unwrap_or_default();
+    wait_for("it to sleep", || {
+        command_line().starts_with(b"sleep").then_some(())
+    });
+    session.crash_server();
+    let (status, _) = session.program.ended();
+    assert_eq!(status.code(), Some(1));
+    wait_for("its end", || command_line().is_empty().then_some(()));
+    assert_eq!(fs::read_dir(&temporary).unwrap().count(), 0);
+}
+
+#[test]
 fn the_error_view_and_the_inspector_say_what_a_program_shows() {
     // As the surface in shadow: the ambient light.
     let Some((mut session, _)) = view(&flat(0.3, 0.0), &["--stage", "5"]) else {
