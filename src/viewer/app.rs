@@ -209,6 +209,11 @@ impl App<'_> {
         self.waits_for().is_some()
     }
 
+    /// Whether a renderer that the viewer was given is making it.
+    fn waits_for_renderer(&self) -> bool {
+        matches!(self.renderers.shown(), Renderer::Given(_)) && self.waiting()
+    }
+
     /// For how long it has not been there.
     fn waits_for(&self) -> Option<Duration> {
         let shown = self.content.traced().map(|traced| &traced.frame);
@@ -324,13 +329,16 @@ impl App<'_> {
                 renderer: gl_window.renderer().to_owned(),
             });
         }
-        if self.playing() && self.frame_rate.count(start) {
+        // A picture that is only drawn again while the next one is awaited is no other frame.
+        let is_frame = is_new || !self.waiting();
+        if self.playing() && is_frame && self.frame_rate.count(start) {
             self.poll_window();
         }
         self.next_frame = start + self.frame_time;
-        // The time that a comparison takes is seen to pass.
-        let comparing = self.content.is_comparing().then(|| start + PATIENCE);
-        if let Some(end) = change.into_iter().chain(comparing).min() {
+        // The time that a comparison or a renderer takes is seen to pass.
+        let passes = self.content.is_comparing() || self.waits_for_renderer();
+        let next = passes.then(|| start + PATIENCE);
+        if let Some(end) = change.into_iter().chain(next).min() {
             event_loop.set_control_flow(ControlFlow::WaitUntil(end));
         }
         self.schedule(event_loop);

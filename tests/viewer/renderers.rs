@@ -142,6 +142,53 @@ fn a_slow_program_keeps_nobody_waiting() {
 }
 
 #[test]
+fn a_slow_program_is_said_to_be_at_it() {
+    let slow = flat(0.5, 4.0);
+    let Some((mut session, _)) = view(&slow, &["--stage", "6"]) else {
+        return;
+    };
+    shows_grey(&session, 0.5);
+    let picture = session.pixels().unwrap();
+    session.type_keys("5");
+    // The note counts the seconds, and goes with the wait.
+    let noted = || {
+        let shown = session.pixels()?;
+        let noted = shown.differences(&picture, 0..shown.height) > 100;
+        noted.then_some(shown)
+    };
+    let first = wait_for("a note", noted);
+    session.screenshot("viewer-slow-program.png");
+    wait_for("a later note", || {
+        let later = noted()?;
+        (later.differences(&first, 0..first.height) > 0).then_some(())
+    });
+    wait_for("the picture alone", || {
+        let shown = session.pixels()?;
+        (shown.differences(&picture, 0..shown.height) == 0).then_some(())
+    });
+    session.type_keys("q");
+    let [_, _, draws] = session.program.left();
+    // Ten times a second at most.
+    assert!(draws < 60, "{draws}");
+}
+
+#[test]
+fn the_frame_rate_of_a_slow_program_counts_its_pictures() {
+    let Some((mut session, _)) = view(&flat(0.5, 0.8), &[]) else {
+        return;
+    };
+    wait_for("a frame rate", || {
+        let title = session.title();
+        let (_, rate) = title.split_once(" — α = ")?.1.split_once(" — ")?;
+        let rate: u32 = rate.strip_suffix(" fps")?.parse().ok()?;
+        assert!(rate <= 1, "{title}");
+        (rate == 1).then_some(())
+    });
+    session.type_keys("q");
+    session.program.left();
+}
+
+#[test]
 fn the_death_of_the_server_leaves_no_program_running() {
     let Some(xvfb) = Xvfb::start(&[]) else {
         return;

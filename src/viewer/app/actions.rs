@@ -77,6 +77,10 @@ impl App<'_> {
             self.ask_for_redraw();
         } else {
             self.request();
+            // That a renderer is slow is written over the last picture.
+            if self.waits_for_renderer() {
+                self.ask_for_redraw();
+            }
         }
     }
 
