@@ -27,9 +27,11 @@ mod request;
 mod scene_files;
 mod words;
 
+use std::io;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use crate::{Image, Render, RenderError, Scene, Stage};
 use diagnostics::Diagnostics;
@@ -40,6 +42,12 @@ use words::Words;
 
 pub use error::{Fault, Partial, ProgramError};
 pub use held::end_all;
+
+/// How long a program that cannot be started since a linker still has it open is waited for.
+const WRITTEN: Duration = Duration::from_secs(1);
+
+/// How long to sleep between two tries to start it.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// A program that is asked for pictures.
 ///
@@ -101,10 +109,23 @@ impl Program {
     }
 
     fn start_process(&self) -> Result<Process, ProgramError> {
-        Process::start(&self.words, &self.diagnostics).map_err(|reason| ProgramError::Start {
-            program: self.words.name().to_owned(),
-            reason,
-        })
+        let deadline = Instant::now() + WRITTEN;
+        loop {
+            match Process::start(&self.words, &self.diagnostics) {
+                Err(reason)
+                    if reason.kind() == io::ErrorKind::ExecutableFileBusy
+                        && Instant::now() < deadline =>
+                {
+                    thread::sleep(LOOK);
+                }
+                started => {
+                    return started.map_err(|reason| ProgramError::Start {
+                        program: self.words.name().to_owned(),
+                        reason,
+                    });
+                }
+            }
+        }
     }
 
     /// The words of the command without the folders of files, as in `python3 tracer.py`: at most 40

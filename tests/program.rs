@@ -321,6 +321,25 @@ fn what_cannot_be_started_is_one_line() {
     );
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_still_being_written_is_waited_for() {
+    let folder = folder("");
+    let path = folder.path().join("linked");
+    fs::copy("/bin/cat", &path).unwrap();
+    let linker = fs::File::options().append(true).open(&path).unwrap();
+    let output = capture(&folder, "./linked", "10").output().unwrap();
+    let line = failed(&output, 1, "for ever");
+    let end = ": let whatever writes it finish, and start it then\n";
+    assert!(line.ends_with(end), "{line}");
+    let command = path.display().to_string();
+    thread::spawn(move || {
+        thread::sleep(Duration::from_millis(300));
+        drop(linker);
+    });
+    Program::start(&command, Duration::from_secs(10), |_| {}).unwrap();
+}
+
 #[test]
 fn a_picture_may_come_in_single_bytes_and_from_a_command_in_quotes() {
     let folder = folder("");

@@ -77,6 +77,7 @@ fn advice(reason: &io::Error) -> &'static str {
     match reason.kind() {
         io::ErrorKind::NotFound => "give its path, as in ./homework, or its name in PATH",
         io::ErrorKind::PermissionDenied => "allow it to be run, as by chmod +x",
+        io::ErrorKind::ExecutableFileBusy => "let whatever writes it finish, and start it then",
         io::ErrorKind::WouldBlock | io::ErrorKind::OutOfMemory => {
             "end other programs, or raise `ulimit -u` or `ulimit -v`"
         }
