@@ -36,7 +36,8 @@ pub(crate) struct Arguments {
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
-    /// A file to write the comparison to, as JSON; - is standard output, which has nothing else then
+    /// A file to write the comparison to, as JSON; - is standard output, which has nothing else
+    /// then
     #[arg(long, value_name = "PATH")]
     json: Option<PathBuf>,
     /// Fail where a sample is further off than this many f32 steps, or a NaN on one side only

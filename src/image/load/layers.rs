@@ -1,4 +1,4 @@
-//! The layers of an EXR: red, green and blue whose channels are named alike but for the last letter.
+//! The layers of an EXR: red, green and blue, whose names differ in the last letter alone.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
