@@ -189,6 +189,30 @@ fn each_frame_is_named_with_as_many_digits_as_the_last() {
 }
 
 #[test]
+fn no_threads_are_one_a_core() {
+    let folder = folder();
+    let options = "--stage 6 --size 8 --threads 0";
+    done(
+        &folder,
+        &format!("capture {options} --through none -o a.exr"),
+    );
+    assert_eq!(
+        exr_bits(&folder.path().join("a.exr")),
+        bits(&traced(6, 0.0, 8))
+    );
+    let line = "report --size 2 --frames 0..0 --kernel double";
+    let titles = |line: &str| {
+        let table = printed(&folder, line);
+        let mut lines = table.lines().map(str::split_whitespace);
+        let titles = lines.find(|words| words.clone().take(3).eq(["│", "1", "thread"]));
+        titles.map(|words| words.collect::<String>())
+    };
+    let given = titles(&format!("{line} --threads 0"));
+    assert!(given.is_some());
+    assert_eq!(given, titles(line));
+}
+
+#[test]
 fn alpha_is_any_finite_number() {
     let folder = folder();
     let line = "capture --stage 4 --size 8 --through none -o a.exr";
@@ -228,7 +252,7 @@ fn wrong_usage_is_status_2_and_writes_nothing() {
         "capture --stage 6 --size 0 -o a.png",
         "capture --stage 6 --size 16385 -o a.png",
         "capture --stage 6 --size 1.5 -o a.png",
-        "capture --stage 6 --threads 0 -o a.png",
+        "capture --stage 6 --threads -1 -o a.png",
         "capture --stage 6 --kernel none -o a.png",
         "capture --stage 6 --through glx -o a.png",
         "capture --stage 6 --program cat --kernel exact -o a.png",

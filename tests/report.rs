@@ -495,7 +495,7 @@ fn wrong_usage_is_2_and_failure_is_1_with_one_line_before_anything_is_measured()
         "--size 0",
         "--frames 3..2",
         "--kernel quick",
-        "--threads 0",
+        "--threads -1",
         "file",
     ] {
         failed(&folder, line, 2);

@@ -1,7 +1,6 @@
 //! Arguments that commands share.
 
 use std::io;
-use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -30,9 +29,9 @@ pub(crate) struct PictureArguments {
     /// How numbers are computed; exact if not given
     #[arg(long, value_name = "NAME", value_parser = kernel())]
     pub(crate) kernel: Option<Kernel>,
-    /// Threads to trace with; one a core if not given
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    /// Threads to trace with; 0 for one a core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
 }
 
 impl PictureArguments {
@@ -51,7 +50,7 @@ impl PictureArguments {
 
     /// The number of threads as the library takes it: 0 for one a core.
     pub(crate) fn threads(&self) -> usize {
-        self.threads.map_or(0, NonZeroUsize::get)
+        self.threads
     }
 }
 

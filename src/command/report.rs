@@ -1,6 +1,5 @@
 //! `firsthit report`: speed against error.
 
-use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -49,9 +48,9 @@ pub(crate) struct Arguments {
     /// if not given
     #[arg(long, value_name = "ABS", requires = "programs", allow_hyphen_values = true, value_parser = tolerance)]
     tolerance: Option<f32>,
-    /// The number of threads to measure beside one; one a core if not given
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    /// The number of threads to measure beside one; 0 for one a core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
     /// The number of spheres of a crowd to be timed too; several with commas between them
     #[arg(long = "crowd", value_name = "N,...", value_delimiter = ',', value_parser = value_parser!(u16).range(1..=i64::from(MAX_CROWD)))]
     crowds: Vec<u16>,
@@ -233,7 +232,7 @@ fn request(arguments: &Arguments) -> Result<Request, Failure> {
         kernels,
         size: arguments.size,
         frames: arguments.frames.clone(),
-        threads: arguments.threads.map_or(0, NonZeroUsize::get),
+        threads: arguments.threads,
         crowds,
         tolerance: arguments.tolerance.unwrap_or(TOLERANCE),
     })
