@@ -11,7 +11,7 @@ mod streams;
 mod view;
 mod watchdog;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -142,10 +142,17 @@ fn window(corner: [i32; 2], size: u32) -> String {
 
 /// Does what the words of a command line say, of which the first is the program's name.
 pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let line = match CommandLine::try_parse_from(words) {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let line = match CommandLine::try_parse_from(&words) {
+        Ok(line) => line,
         // Help and version come this way too.
         Err(answer) if !answer.use_stderr() => return print(&answer.render().to_string()),
-        line => line?,
+        Err(error) => {
+            // The message is of several lines and holds the words: wrong as they are, they are
+            // wrong without control characters too.
+            let again = CommandLine::try_parse_from(words.iter().map(|word| escaped_word(word)));
+            return Err(again.err().unwrap_or(error).into());
+        }
     };
     match line.command.unwrap_or(Command::View(line.view)) {
         Command::View(arguments) => view::run(&arguments),
@@ -159,19 +166,33 @@ pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), Failu
 
 /// One line on standard error, whatever is in `message`: a file's name may hold line breaks.
 pub(crate) fn say(message: &str) {
-    let mut line = String::from("firsthit: ");
-    for character in message.chars() {
+    let line = format!("firsthit: {}\n", escaped(message));
+    let _ = io::stderr().write_all(line.as_bytes());
+}
+
+/// A text without control characters, which a terminal would obey.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::new();
+    for character in text.chars() {
         if character.is_control() {
-            line.extend(character.escape_default());
+            escaped.extend(character.escape_default());
         } else {
-            line.push(character);
+            escaped.push(character);
         }
     }
-    line.push('\n');
-    let _ = io::stderr().write_all(line.as_bytes());
+    escaped
+}
+
+/// The same of a word that need not be text.
+fn escaped_word(word: &OsStr) -> OsString {
+    match word.to_string_lossy() {
+        text if text.contains(char::is_control) => escaped(&text).into(),
+        _ => word.to_owned(),
+    }
 }
 
 /// Wrong usage, with the usage of the command that has the arguments `A` below the message.
 fn wrong<A: Args>(command: &'static str, message: impl std::fmt::Display) -> clap::Error {
-    A::augment_args(clap::Command::new(command)).error(ErrorKind::ValueValidation, message)
+    A::augment_args(clap::Command::new(command))
+        .error(ErrorKind::ValueValidation, escaped(&message.to_string()))
 }

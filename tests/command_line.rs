@@ -322,6 +322,29 @@ fn wrong_usage_is_status_2_and_writes_nothing() {
 }
 
 #[test]
+fn wrong_usage_shows_no_control_character() {
+    let folder = folder();
+    for (line, word, said) in [
+        (
+            "capture -o a.png --stage",
+            "6\x1b[2J\r\n",
+            "6\\u{1b}[2J\\r\\n",
+        ),
+        ("", "dr\naw", "dr\\naw"),
+        ("capture --stage 6 -o", "a\t.jpeg", "a\\t.jpeg"),
+        ("compare a.png b.png -o", "\x07.exr", "\\u{7}.exr"),
+        ("report --json a --plot", "a\n", "a\\n"),
+    ] {
+        let output = program(&folder, line).arg(word).output().unwrap();
+        let message = helpers::failed(&output, 2, line);
+        assert!(message.contains(said), "{message}");
+        let is_control = |c: char| c.is_control() && c != '\n';
+        assert!(!message.contains(is_control), "{message:?}");
+        assert!(!message.contains(word), "{message:?}");
+    }
+}
+
+#[test]
 fn a_scene_that_cannot_be_had_is_status_1_and_writes_nothing() {
     let folder = folder();
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
