@@ -24,7 +24,8 @@ fn refusals() -> Vec<(String, usize, Option<&'static str>, &'static str)> {
         ("a = 1".into(), 1, Some("a"), "unknown field `a`"),
         (format!("{BALL}shine = 3.0"), 5, Some("sphere[0].shine"), "unknown field `shine`"),
         (light("colour = 1.0"), 2, Some("light.colour"), "unknown field `colour`"),
-        (format!("{BALL}radius = 0.5"), 5, None, "duplicate key"),
+        (format!("{BALL}radius = 0.5"), 5, Some("radius"), "duplicate key"),
+        (format!("{BALL}\"a b\" = 1\n\"a b\" = 2"), 6, Some("\"a b\""), "duplicate key"),
         // Wrong types and lengths.
         (ball("0.5\n", "\"big\"\n"), 3, Some("sphere[0].radius"), "invalid type: string"),
         (ball("[1.0, 0.5, 0.0]", "[1.0, 0.5]"), 4, Some("sphere[0].color"), "2 values where 3 are needed"),
@@ -78,6 +79,25 @@ fn refusals() -> Vec<(String, usize, Option<&'static str>, &'static str)> {
         (BALL.repeat(4096) + TETRAHEDRON, 4096 * 4 + 1, Some("tetrahedron[0]"), "4097 solids"),
         (BALL.repeat(4098), 4096 * 4 + 1, Some("sphere[4096]"), "4098 solids"),
     ]
+}
+
+#[test]
+fn a_refusal_is_short_however_long_a_key_is() {
+    let key = "k".repeat(3_000_000);
+    for (text, part) in [
+        (format!("{key} = 1"), "k…k"),
+        (format!("{key} = 1"), "`, expected one of `background`"),
+        (format!("{key} = 1\n{key} = 2"), "duplicate key"),
+        (
+            format!("background = \"{key}\""),
+            "invalid type: string \"k",
+        ),
+        (format!("light.{key} = 1"), "light.k"),
+    ] {
+        let said = Scene::from_toml(&text).unwrap_err().to_string();
+        assert!(said.contains(part), "{part}: {} characters", said.len());
+        assert!(said.chars().count() < 600, "{} characters", said.len());
+    }
 }
 
 #[test]

@@ -141,14 +141,19 @@ struct TetrahedronTable {
 pub(super) fn read(text: &str, standard: Option<&Scene>) -> Result<Scene, SceneError> {
     let table = toml::from_str::<SceneTable>(text).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
+        let field = match DeTable::parse(text) {
+            Ok(table) => field_at(table.get_ref(), &span),
+            // A text that does not parse has no fields, but a key that stands there twice is named.
+            Err(_) if error.message() == "duplicate key" => {
+                text.get(span.clone()).map(str::to_owned)
+            }
+            Err(_) => None,
+        };
         SceneError {
             line: Some(line_at(text, span.start)),
-            // A text that does not parse has no fields.
-            field: DeTable::parse(text)
-                .ok()
-                .and_then(|table| field_at(table.get_ref(), &span)),
+            field: field.map(|field| shortened(&field)),
             // The parser's messages have a second line with a hint; a refusal is one line.
-            problem: error.message().trim().replace('\n', "; "),
+            problem: shortened(&error.message().trim().replace('\n', "; ")),
         }
     })?;
     let scene = describe(table, standard).and_then(SceneBuilder::build);
@@ -270,6 +275,20 @@ impl From<TetrahedronTable> for Tetrahedron {
             color: table.color.into(),
         }
     }
+}
+
+/// How many characters of a name or a message are shown at each of its ends.
+const SHOWN: usize = 120;
+
+/// A text without its middle, where it is as long as a key of a file can be.
+fn shortened(text: &str) -> String {
+    let count = text.chars().count();
+    if count <= 2 * SHOWN {
+        return text.to_owned();
+    }
+    let first = text.chars().take(SHOWN);
+    let last = text.chars().skip(count - SHOWN);
+    first.chain(['…']).chain(last).collect()
 }
 
 /// The number of the line in which this byte of the text is.
