@@ -92,6 +92,8 @@ impl GlWindow {
         let attributes = Window::default_attributes()
             .with_title("firsthit")
             .with_inner_size(LogicalSize::new(side, side));
+        #[cfg(all(unix, not(target_vendor = "apple")))]
+        let attributes = named(attributes);
         let mut reasons = Vec::new();
         for prefer_egl in [false, true] {
             match GlWindow::open_with(event_loop, &attributes, picture, prefer_egl) {
@@ -452,6 +454,13 @@ impl GlWindow {
             max: IVec2::new(end.x, height - first.y),
         }
     }
+}
+
+/// A window that a desktop knows by the program's name: app_id on Wayland, WM_CLASS on X11.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    use winit::platform::wayland::WindowAttributesExtWayland as _;
+    attributes.with_name("firsthit", "firsthit")
 }
 
 /// A rectangle of the window in one colour, over the picture.

@@ -4,7 +4,7 @@ use std::thread;
 
 use firsthit::Stage;
 use x11rb::connection::Connection as _;
-use x11rb::protocol::xproto::{ConnectionExt as _, CreateWindowAux, Window, WindowClass};
+use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, CreateWindowAux, Window, WindowClass};
 
 use super::WATCH;
 use super::pixels::traced;
@@ -29,6 +29,18 @@ fn a_static_stage_is_traced_and_uploaded_once_and_then_sleeps() {
     assert_eq!([traces, uploads], [3, 3]);
     // One each, and a few that the window asked for when it appeared.
     assert!((3..=8).contains(&draws), "{draws} frames");
+}
+
+#[test]
+fn a_desktop_knows_the_window_by_the_name_of_the_program() {
+    let Some(session) = Session::start(&["view", "--stage", "1"]) else {
+        return;
+    };
+    let (class, text) = (AtomEnum::WM_CLASS, AtomEnum::STRING);
+    let connection = &session.connection;
+    let property = connection.get_property(false, session.window, class, text, 0, 100);
+    let value = property.unwrap().reply().unwrap().value;
+    assert_eq!(value, b"firsthit\0firsthit\0");
 }
 
 #[test]
