@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::comparison::{Compared, ErrorView};
+use super::renderer::Renderer;
 use super::tracing::{Frame, Traced};
 use crate::{Image, Kernel, tracer};
 
@@ -189,12 +190,14 @@ impl Content {
     }
 
     /// Gives the samples back, to be traced over by `next`, where the texture holds them: not those
-    /// of a slow picture, which may be wanted again before the next one is there, and not those of
-    /// `next` itself, which would not be traced again.
+    /// of a slow picture, which may be wanted again before the next one is there, not those that a
+    /// renderer made, which a click compares with the truth, and not those of `next` itself, which
+    /// would not be traced again.
     pub(super) fn give_back(&mut self, next: &Frame) {
         if let Content::Picture(picture) = self
             && let Texture::Current = picture.texture
             && picture.traced.time < SOON
+            && matches!(picture.traced.frame.renderer, Renderer::Kernel(_))
             && picture.traced.frame != *next
         {
             picture.samples = None;
@@ -260,7 +263,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::tracer::Tally;
-    use crate::viewer::renderer::Renderer;
+    use crate::viewer::renderer::Given;
     use crate::{Scene, Stage};
 
     const SIZE: u32 = 6;
@@ -372,8 +375,19 @@ mod tests {
         content.give_back(&next);
         assert!(content.samples().is_some(), "a slow picture");
 
+        let mut given = traced(3, 0..SIZE);
+        given.frame.renderer = Renderer::Given(Given {
+            number: 0,
+            name: Arc::from("homework"),
+            edition: 0,
+        });
+        content.picture_came(given, Arc::new(image(3.0)), Instant::now());
+        upload(&mut content);
+        content.give_back(&next);
+        assert!(content.samples().is_some(), "a click would need them");
+
         content.toggle_errors(Instant::now());
-        come(&mut content, 3, 0..SIZE);
+        come(&mut content, 4, 0..SIZE);
         upload(&mut content);
         content.give_back(&next);
         assert!(content.samples().is_some(), "errors are looked at");
