@@ -168,8 +168,16 @@ impl Program {
         let line = request.line(path);
         let mut process = match self.process.take() {
             Some(process) => process,
-            None => self.start_process()?,
+            None => {
+                self.last = None;
+                self.start_process()?
+            }
         };
+        if let Some(fault) = process.unasked(size_of_val(image.samples())) {
+            drop(process);
+            // What comes after a picture is the fault of that picture, not of the next.
+            return Err(self.fault(self.last.unwrap_or(request), fault));
+        }
         self.last = Some(request);
         match process.answer(line, self.timeout, image) {
             Ok(()) => {

@@ -523,6 +523,25 @@ fn after_a_fault_it_is_started_anew() {
 }
 
 #[test]
+fn what_comes_after_a_picture_is_told_of_that_picture() {
+    let script = r#"while read line; do head -c 12 /dev/zero; sleep 0.1; printf hello; done"#;
+    let folder = folder(script);
+    let mut program = start(&folder);
+    let mut image = Image::new(1).unwrap();
+    let scene = Scene::builtin();
+    program
+        .ask(&scene, Stage::Reflection, 0.5, &mut image)
+        .unwrap();
+    // Ten times as long as it takes.
+    thread::sleep(Duration::from_secs(1));
+    let mut larger = Image::new(2).unwrap();
+    let error = program.ask(&scene, Stage::Shadow, 0.0, &mut larger);
+    let error = error.unwrap_err().to_string();
+    let start = "sh p.sh: stage 6, α = 0.5, 1 × 1: wrote more to its standard output than the picture's 12 bytes: \"hello\"";
+    assert!(error.starts_with(start), "{error}");
+}
+
+#[test]
 fn a_thousand_pictures_take_no_more_memory_than_some() {
     // 48 KiB each: 24 MiB more in the second half if none were given back.
     let folder = folder("while read line; do head -c 49152 /dev/zero; done");

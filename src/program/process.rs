@@ -2,7 +2,7 @@
 
 use std::io::{self, Write as _};
 use std::process::{ChildStdin, ExitStatus, Stdio};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, TryRecvError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -71,6 +71,17 @@ impl Process {
         })
     }
 
+    /// That it has written what nobody asked for: before the first request, which is for a picture
+    /// of `expected` bytes, or after the last one.
+    pub(super) fn unasked(&self, expected: usize) -> Option<Fault> {
+        let chunk = self.output.try_recv().ok()?;
+        let expected = match self.answer.expected {
+            0 => expected,
+            last => last,
+        };
+        Some(self.surplus(chunk, expected))
+    }
+
     /// Sends a request, and writes the answer into all of `image`.
     pub(super) fn answer(
         &mut self,
@@ -80,10 +91,6 @@ impl Process {
     ) -> Result<(), Fault> {
         let samples = image.samples_mut();
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(samples);
-        match self.output.try_recv() {
-            Ok(chunk) => return Err(self.surplus(chunk, bytes.len())),
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
-        }
         self.answer = Answer {
             expected: bytes.len(),
             ..Answer::default()
