@@ -12,6 +12,7 @@ use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
 use firsthit::report;
 
 use super::arguments::finite;
+use super::streams::is_standard;
 use super::watchdog::Watchdog;
 use super::{Failure, print, wrong};
 
@@ -76,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let failure = arguments.limit_passed(&compared.samples);
     let json = || json::json(arguments, &compared, failure.is_none());
     match &arguments.json {
-        Some(path) if path == "-" => print(&json())?,
+        Some(path) if is_standard(path) => print(&json())?,
         path => {
             if let Some(path) = path {
                 report::save(&json(), path)?;
@@ -104,7 +105,7 @@ impl Arguments {
         {
             return refused(path, "a false-colour picture is a .png");
         }
-        let json = self.json.as_ref().filter(|&path| path != "-");
+        let json = self.json.as_ref().filter(|path| !is_standard(path));
         for path in [self.output.as_ref(), json].into_iter().flatten() {
             if self.paths().iter().any(|input| is_same(path, input)) {
                 return refused(
