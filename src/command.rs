@@ -5,6 +5,7 @@ mod capture;
 mod compare;
 mod explain;
 mod maker;
+mod manual;
 mod report;
 mod round_trip;
 mod streams;
@@ -55,6 +56,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Print the built-in scene as TOML, to start one's own from
     Scene,
+    /// Print the completions of this command line for a shell
+    Completions(manual::CompletionsArguments),
+    /// Print the manual page of the program or of one of its commands, for man
+    Man(manual::ManArguments),
 }
 
 /// Why a command did not do what it was asked to. All but wrong usage are one line.
@@ -161,6 +166,8 @@ pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), Failu
         Command::Report(arguments) => report::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Scene => print(BUILTIN_TOML),
+        Command::Completions(arguments) => manual::completions(&arguments),
+        Command::Man(arguments) => manual::man(&arguments),
     }
 }
 

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{BufReader, Write as _};
 use std::path::Path;
-use std::process::{Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use exr::prelude::Compression;
 use firsthit::camera::frame_angle;
@@ -723,6 +723,61 @@ fn scene_prints_the_built_in_scene() {
     let text = printed(&folder(), "scene");
     assert_eq!(text, scene::BUILTIN_TOML);
     assert_eq!(Scene::from_toml(&text).unwrap(), Scene::builtin());
+}
+
+/// The commands, each with its own arguments.
+const COMMANDS: [&str; 8] = [
+    "view",
+    "capture",
+    "explain",
+    "report",
+    "compare",
+    "scene",
+    "completions",
+    "man",
+];
+
+#[test]
+fn shells_complete_the_command_line() {
+    let folder = folder();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = printed(&folder, &format!("completions {shell}"));
+        for word in COMMANDS.iter().chain(&["kernel", "linear"]) {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    let script = printed(&folder, "completions bash");
+    let complete = "COMP_WORDS=(firsthit capture --kernel re); COMP_CWORD=3; \
+                    _firsthit firsthit re --kernel; echo ${COMPREPLY[@]}";
+    let output = Command::new("bash")
+        .args(["-c", &format!("{script}\n{complete}")])
+        .output()
+        .unwrap();
+    assert_eq!(succeeded(&output, "bash"), "reference\n");
+    helpers::failed(
+        &program(&folder, "completions sh").output().unwrap(),
+        2,
+        "sh",
+    );
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let folder = folder();
+    let page = printed(&folder, "man");
+    assert!(page.contains(".TH firsthit 1"), "{page}");
+    for command in COMMANDS {
+        assert!(page.contains(&format!("firsthit\\-{command}(1)")), "{page}");
+        let page = printed(&folder, &format!("man {command}"));
+        assert!(
+            page.contains(&format!(".TH firsthit-{command} 1")),
+            "{page}"
+        );
+    }
+    let page = printed(&folder, "man capture");
+    assert!(page.contains("\\-\\-linear"), "{page}");
+    let output = program(&folder, "man draw").output().unwrap();
+    helpers::failed(&output, 2, "man draw");
 }
 
 #[test]
