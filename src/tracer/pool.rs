@@ -14,7 +14,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr;
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release, SeqCst};
 use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicUsize};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle, Thread};
 use std::time::{Duration, Instant};
 
@@ -95,10 +95,19 @@ impl Pool {
             }),
             workers: Vec::new(),
         };
+        // A thread that begins asks for a little memory, and the C library ends the process where
+        // that is refused: so all have begun before the caller asks for pictures.
+        let begun = Arc::new((Mutex::new(0), Condvar::new()));
         for number in 1..threads {
-            let shared = pool.shared.clone();
+            let (shared, begun) = (pool.shared.clone(), begun.clone());
             let worker = thread::Builder::new().name(format!("tracer {number}"));
-            match worker.spawn(move || shared.serve(number)) {
+            let serve = move || {
+                *lock(&begun.0) += 1;
+                begun.1.notify_one();
+                drop(begun);
+                shared.serve(number);
+            };
+            match worker.spawn(serve) {
                 Ok(worker) => pool.workers.push(worker),
                 // Those that there are do the work of all.
                 Err(_) if one_a_core => break,
@@ -106,6 +115,9 @@ impl Pool {
                 Err(refused) => return Err(refused),
             }
         }
+        let (count, changed) = &*begun;
+        let all = |count: &mut usize| *count < pool.workers.len();
+        drop(changed.wait_while(lock(count), all));
         Ok(pool)
     }
 
