@@ -9,9 +9,14 @@ use ::exr::math::Vec2;
 
 use super::Image;
 
+/// Where an EXR can be written: its table of blocks, at the beginning, is written last.
+pub(super) trait WriteSeek: Write + Seek {}
+
+impl<T: Write + Seek> WriteSeek for T {}
+
 /// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib,
-/// rows in order.
-pub(super) fn write<W: Write + Seek>(image: &Image, output: &mut W) -> io::Result<()> {
+/// rows in order. The encoder is compiled once, for whatever it writes to.
+pub(super) fn write(image: &Image, output: &mut dyn WriteSeek) -> io::Result<()> {
     let size = image.size() as usize;
     let samples = image.samples();
     let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {

@@ -21,7 +21,7 @@ pub(crate) fn encoder<W: Write>(output: W, width: u32, height: u32) -> Encoder<'
 }
 
 /// Writes the picture row by row: a second copy of a large one would not fit beside it.
-pub(super) fn write<W: Write>(image: &Image, output: &mut W) -> io::Result<()> {
+pub(super) fn write(image: &Image, output: &mut dyn Write) -> io::Result<()> {
     let mut writer = encoder(output, image.size(), image.size()).write_header()?;
     let mut stream = writer.stream_writer_with_size(CHUNK)?;
     image.write_rgb24(&mut stream)?;

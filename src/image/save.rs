@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::whole_file::{Output, WholeFile};
+use super::whole_file::WholeFile;
 use super::{Format, Image, SaveError, exr, png};
 
 impl Image {
@@ -16,11 +16,10 @@ impl Image {
     /// [`SaveError`] where the extension is neither of the two, or the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         let path = path.as_ref();
-        let write = match Format::of(path)? {
-            Format::Png => png::write::<Output>,
-            Format::Exr => exr::write::<Output>,
-            Format::Apng => return Err(SaveError::Animation(path.to_owned())),
-        };
-        WholeFile::write(path, |output| write(self, output))
+        match Format::of(path)? {
+            Format::Png => WholeFile::write(path, |output| png::write(self, output)),
+            Format::Exr => WholeFile::write(path, |output| exr::write(self, output)),
+            Format::Apng => Err(SaveError::Animation(path.to_owned())),
+        }
     }
 }
