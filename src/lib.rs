@@ -117,7 +117,7 @@ pub mod tracer;
 pub mod viewer;
 
 pub use image::Image;
-pub use render::{Render, RenderError};
+pub use render::{Canceller, Render, RenderError};
 pub use scene::Scene;
 pub use stage::Stage;
 pub use tracer::{Kernel, Tracer};

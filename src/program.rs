@@ -29,11 +29,13 @@ mod words;
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::{Image, Render, RenderError, Scene, Stage};
+use crate::{Canceller, Image, Render, RenderError, Scene, Stage};
 use diagnostics::Diagnostics;
 use process::Process;
 use request::Request;
@@ -75,6 +77,8 @@ pub struct Program {
     process: Option<Process>,
     /// The picture that was asked for last.
     last: Option<Request>,
+    /// That picture is not wanted any more.
+    is_cancelled: Arc<AtomicBool>,
 }
 
 impl Program {
@@ -103,6 +107,7 @@ impl Program {
             scenes,
             process: None,
             last: None,
+            is_cancelled: Arc::default(),
         };
         program.process = Some(program.start_process()?);
         Ok(program)
@@ -179,7 +184,8 @@ impl Program {
             return Err(self.fault(self.last.unwrap_or(request), fault));
         }
         self.last = Some(request);
-        match process.answer(line, self.timeout, image) {
+        self.is_cancelled.store(false, Relaxed);
+        match process.answer(line, self.timeout, &self.is_cancelled, image) {
             Ok(()) => {
                 self.process = Some(process);
                 Ok(())
@@ -234,6 +240,12 @@ impl Render for Program {
 
     fn files(&self) -> Vec<PathBuf> {
         self.files()
+    }
+
+    /// It ends the process that works at the picture.
+    fn canceller(&self) -> Option<Canceller> {
+        let is_cancelled = self.is_cancelled.clone();
+        Some(Box::new(move || is_cancelled.store(true, Relaxed)))
     }
 
     /// Ends the process: the next picture is asked of a new one.

@@ -93,10 +93,20 @@ pub trait Render {
         Vec::new()
     }
 
+    /// What ends the picture that is being made: after it is called, on any thread,
+    /// [`Render::render`] returns an error soon, and the next picture is made as ever. `None` where
+    /// a picture that has begun has to be waited for.
+    fn canceller(&self) -> Option<Canceller> {
+        None
+    }
+
     /// One of its [`files`](Render::files) has changed: the next picture is to be made with what is
     /// there now.
     fn reload(&mut self) {}
 }
+
+/// Ends the picture that a renderer makes.
+pub type Canceller = Box<dyn Fn() + Send>;
 
 /// Why there is no picture, in one line: any error, or a text.
 pub type RenderError = Box<dyn std::error::Error + Send + Sync>;

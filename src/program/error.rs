@@ -117,6 +117,9 @@ pub enum Fault {
         /// What it had written.
         answer: Partial,
     },
+    /// Nobody waits for the picture any more.
+    #[error("was ended, because nobody waits for the picture any more")]
+    Cancelled,
     /// It wrote to its standard output what belongs to no picture.
     #[error(
         "wrote more to its standard output than the picture's {expected} bytes: \"{}\": let it write N × N × 3 floats of 4 bytes there, and messages to standard error",

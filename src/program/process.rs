@@ -2,6 +2,8 @@
 
 use std::io::{self, Write as _};
 use std::process::{ChildStdin, ExitStatus, Stdio};
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -47,6 +49,7 @@ enum Stop {
     /// The pipe has ended, or the process has.
     End,
     Late,
+    Cancelled,
 }
 
 impl Process {
@@ -82,11 +85,13 @@ impl Process {
         Some(self.surplus(chunk, expected))
     }
 
-    /// Sends a request, and writes the answer into all of `image`.
+    /// Sends a request, and writes the answer into all of `image`, unless it `is_cancelled`
+    /// meanwhile.
     pub(super) fn answer(
         &mut self,
         request: String,
         timeout: Duration,
+        is_cancelled: &AtomicBool,
         image: &mut Image,
     ) -> Result<(), Fault> {
         let samples = image.samples_mut();
@@ -102,8 +107,9 @@ impl Process {
         let deadline = Instant::now().checked_add(timeout);
         let mut rest = bytes;
         while !rest.is_empty() {
-            let chunk = match self.next(deadline) {
+            let chunk = match self.next(deadline, is_cancelled) {
                 Ok(chunk) => chunk,
+                Err(Stop::Cancelled) => return Err(Fault::Cancelled),
                 Err(Stop::Late) => {
                     let answer = self.answer.partial();
                     return Err(Fault::Late { timeout, answer });
@@ -128,7 +134,11 @@ impl Process {
     }
 
     /// The next bytes of its standard output.
-    fn next(&mut self, deadline: Option<Instant>) -> Result<Vec<u8>, Stop> {
+    fn next(
+        &mut self,
+        deadline: Option<Instant>,
+        is_cancelled: &AtomicBool,
+    ) -> Result<Vec<u8>, Stop> {
         let mut has_ended = false;
         loop {
             let left = deadline.map_or(Duration::MAX, |deadline| {
@@ -139,6 +149,9 @@ impl Process {
                 Err(RecvTimeoutError::Disconnected) => return Err(Stop::End),
                 // Another process holds the pipe, and no more need come through it.
                 Err(RecvTimeoutError::Timeout) if has_ended => return Err(Stop::End),
+                Err(RecvTimeoutError::Timeout) if is_cancelled.load(Relaxed) => {
+                    return Err(Stop::Cancelled);
+                }
                 Err(RecvTimeoutError::Timeout) if left <= LOOK => return Err(Stop::Late),
                 Err(RecvTimeoutError::Timeout) => has_ended = self.group.has_ended(),
             }
@@ -188,7 +201,7 @@ impl Process {
     pub(super) fn leave(mut self) -> Option<Fault> {
         self.requests = None;
         let deadline = Instant::now() + LEAVE;
-        let surplus = self.next(Some(deadline)).ok();
+        let surplus = self.next(Some(deadline), &AtomicBool::new(false)).ok();
         let fault = surplus.map(|bytes| self.surplus(bytes, self.answer.expected));
         if fault.is_none() {
             self.group.has_ended_by(deadline);

@@ -17,7 +17,7 @@ use crate::{Image, Render, RenderError, Scene, Stage};
 
 use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing};
-use super::content::{Content, Redisplay};
+use super::content::{Content, Redisplay, STAND_IN};
 use super::frame_rate::FrameRate;
 use super::hud::Hud;
 use super::information::Times;
@@ -214,6 +214,11 @@ impl App<'_> {
         matches!(self.renderers.shown(), Renderer::Given(_)) && self.waiting()
     }
 
+    /// Whether it takes so long that this is said.
+    fn is_slow(&self) -> bool {
+        self.waits_for_renderer() && self.waits_for() >= Some(SLOW)
+    }
+
     /// For how long it has not been there.
     fn waits_for(&self) -> Option<Duration> {
         let shown = self.content.traced().map(|traced| &traced.frame);
@@ -282,6 +287,12 @@ impl App<'_> {
             // Opening the window was no part of the animation.
             self.playback.count_from(start - self.frame_time);
         }
+        if self.content.traced().is_none() && self.is_slow() {
+            let mut frame = self.wanted();
+            // Not this picture, which is still to come.
+            frame.alpha = f64::NAN;
+            self.stand_in(frame)?;
+        }
         let is_new = self.upload()?;
         self.check_pixels();
         // The next picture is traced while this one is drawn.
@@ -310,6 +321,8 @@ impl App<'_> {
             return Ok(());
         };
         if redisplay == Redisplay::Clear {
+            // A renderer that is slow with its first picture is noticed.
+            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
             return gl_window.clear();
         }
         let waits = self.hud.information;
@@ -330,7 +343,7 @@ impl App<'_> {
             });
         }
         // A picture that is only drawn again while the next one is awaited is no other frame.
-        let is_frame = is_new || !self.waiting();
+        let is_frame = (is_new || !self.waiting()) && !self.content.is_stand_in();
         if self.playing() && is_frame && self.frame_rate.count(start) {
             self.poll_window();
         }
@@ -469,23 +482,30 @@ impl App<'_> {
                     self.stop();
                     self.retitle();
                 }
-                (self.report)(event);
+                // A picture that was cancelled is missed by nobody.
+                if is_wanted {
+                    (self.report)(event);
+                }
                 if self.content.traced().is_none() {
-                    self.content.picture_came(
-                        Traced {
-                            frame,
-                            number: 0,
-                            changed: 0..self.size,
-                            time: Duration::ZERO,
-                            tally: Tally::default(),
-                        },
-                        Arc::new(Image::new(self.size)?),
-                        Instant::now(),
-                    );
+                    self.stand_in(frame)?;
                 }
             }
         }
         self.touch();
+        Ok(())
+    }
+
+    /// Shows black where there is no picture yet, so that notes can be read.
+    fn stand_in(&mut self, frame: Frame) -> Result<(), ViewerError> {
+        let traced = Traced {
+            frame,
+            number: STAND_IN,
+            changed: 0..self.size,
+            time: Duration::ZERO,
+            tally: Tally::default(),
+        };
+        let black = Arc::new(Image::new(self.size)?);
+        self.content.picture_came(traced, black, Instant::now());
         Ok(())
     }
 
@@ -505,11 +525,13 @@ impl App<'_> {
                     (self.report)(Event::SceneRefused(error));
                 }
             },
-            Change::Renderer(number) => self.renderers.has_changed(number),
+            Change::Renderer(number) => {
+                self.renderers.has_changed(number);
+                // Before the next picture is requested, which must not be cancelled.
+                self.tracing.cancel(number);
+            }
         }
-        if !self.playing() {
-            self.request();
-        }
+        self.request();
         self.touch();
     }
 

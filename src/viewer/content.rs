@@ -13,6 +13,10 @@ use crate::{Image, Kernel, tracer};
 /// long.
 const SOON: Duration = Duration::from_millis(20);
 
+/// The number of a black picture that stands in for one that is not there: nobody compares it, or
+/// works its pixels through.
+pub(super) const STAND_IN: u64 = 0;
+
 /// What the window shows.
 pub(super) enum Content {
     /// No picture has been traced yet.
@@ -112,7 +116,15 @@ impl Content {
     /// back.
     pub(super) fn shown(&self) -> Option<(&Traced, Option<&Arc<Image>>)> {
         let picture = self.picture()?;
-        Some((&picture.traced, picture.samples.as_ref()))
+        let samples = picture.samples.as_ref();
+        let samples = samples.filter(|_| picture.traced.number != STAND_IN);
+        Some((&picture.traced, samples))
+    }
+
+    /// Whether a picture is shown that stands in for one.
+    pub(super) fn is_stand_in(&self) -> bool {
+        self.traced()
+            .is_some_and(|traced| traced.number == STAND_IN)
     }
 
     /// The frame whose errors are to be shown, and its picture.
@@ -125,7 +137,9 @@ impl Content {
     pub(super) fn is_comparing(&self) -> bool {
         match self {
             Content::Nothing { .. } | Content::Picture(_) => false,
-            Content::Errors(picture, errors) => errors.are_awaited(&picture.traced.frame),
+            Content::Errors(picture, errors) => {
+                !self.is_stand_in() && errors.are_awaited(&picture.traced.frame)
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use glam::UVec2;
 use crate::diagnosis::{Examination, TOLERANCE};
 use crate::image::{Format, SaveError};
 use crate::tracer::{Progress, Tally, TraceError};
-use crate::{Image, Kernel, Render, RenderError, Scene, Stage, Tracer};
+use crate::{Canceller, Image, Kernel, Render, RenderError, Scene, Stage, Tracer};
 
 use super::renderer::Renderer;
 use super::snapshot;
@@ -345,6 +345,8 @@ pub(super) struct Tracing {
     is_refused: bool,
     /// How far the kernels' thread is.
     progress: Option<Arc<Mutex<Progress>>>,
+    /// What ends the picture that each given renderer makes.
+    cancellers: Vec<Option<Canceller>>,
 }
 
 impl Tracing {
@@ -362,6 +364,8 @@ impl Tracing {
             Engine::Kernels { progress, .. } => Some(progress.clone()),
             Engine::Given { .. } => None,
         };
+        let cancellers = renderers.iter().map(|renderer| renderer.canceller());
+        let cancellers = cancellers.collect();
         let mut all = vec![of_kernels];
         let given = renderers.into_iter().enumerate();
         all.extend(given.map(|(number, renderer)| Pictures::of_renderer(number, renderer, size)));
@@ -381,6 +385,7 @@ impl Tracing {
             requested: None,
             is_refused: false,
             progress,
+            cancellers,
         })
     }
 
@@ -406,6 +411,14 @@ impl Tracing {
             self.worker(&frame.renderer).request(task);
             self.requested = Some((frame, Instant::now()));
             self.is_refused = false;
+        }
+    }
+
+    /// Ends the picture that the given renderer of this number makes: one in an endless loop would
+    /// keep what has mended it waiting.
+    pub(super) fn cancel(&self, number: usize) {
+        if let Some(Some(canceller)) = self.cancellers.get(number) {
+            canceller();
         }
     }
 

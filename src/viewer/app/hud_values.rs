@@ -31,7 +31,9 @@ impl App<'_> {
             }
             values.pointer = Some(gl_window.place_of(place));
         }
-        if let Content::Errors(_, errors) = &self.content {
+        if let Content::Errors(_, errors) = &self.content
+            && !self.content.is_stand_in()
+        {
             values.errors = Some(errors.text(&traced.frame, self.size));
             if let Some(compared) = &errors.done {
                 values.rings.extend(&compared.rings);
