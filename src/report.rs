@@ -214,7 +214,7 @@ pub enum ReportError {
 /// [`ReportError`] where there is no room for the pictures, or no threads, or a crowd is too large.
 pub fn measure(
     request: &Request,
-    renderers: &mut [Box<dyn Render + Send>],
+    renderers: &mut [&mut dyn Render],
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, ReportError> {
     let threads = match request.threads {
@@ -287,7 +287,7 @@ impl Measurement<'_> {
     fn report(
         mut self,
         counts: &[usize],
-        renderers: &mut [Box<dyn Render + Send>],
+        renderers: &mut [&mut dyn Render],
     ) -> Result<Report, ReportError> {
         let mut fillers = Vec::new();
         for &threads in counts {
@@ -400,10 +400,11 @@ impl Measurement<'_> {
     /// The other renderers on all scenes in all stages.
     fn renderers(
         &mut self,
-        renderers: &mut [Box<dyn Render + Send>],
+        renderers: &mut [&mut dyn Render],
         fillers: &mut [(usize, Filler)],
     ) -> Result<Vec<RendererRow>, ReportError> {
         let (request, mut rows) = (self.request, Vec::new());
+        let names = renderers::names(renderers);
         let Some((_, filler)) = fillers.first_mut() else {
             return Ok(rows);
         };
@@ -417,11 +418,12 @@ impl Measurement<'_> {
                     tolerance: request.tolerance,
                     threads: self.threads,
                 };
-                for renderer in renderers.iter_mut() {
-                    let (renderer, image) = (renderer.as_mut(), &mut self.image);
+                for (renderer, name) in renderers.iter_mut().zip(&names) {
+                    let (named, image) = ((&mut **renderer, &name[..]), &mut self.image);
                     let mut next = |next: &str| self.steps.next(next, 1);
-                    let row = renderers::measure(renderer, &frames, image, filler, &mut next)?;
-                    rows.push(row);
+                    rows.push(renderers::measure(
+                        named, &frames, image, filler, &mut next,
+                    )?);
                 }
             }
         }

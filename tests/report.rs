@@ -616,6 +616,23 @@ fn too_many_wrong_pixels_are_a_failure() {
 
 #[cfg(unix)]
 #[test]
+fn what_a_program_writes_after_its_last_picture_is_told_and_so_are_two_of_one_name() {
+    let folder = black();
+    let surplus = "while read line; do head -c 6912 /dev/zero; done; echo bye";
+    std::fs::write(folder.path().join("q.sh"), surplus).unwrap();
+    let mut command = report_on("sh q.sh", &folder, "--stage 5");
+    let output = command.args(["--program", "sh q.sh"]).output().unwrap();
+    let said = helpers::failed(&output, 1, "a program that says bye");
+    assert!(said.contains("bye"), "{said}");
+    let text = helpers::text(&output.stdout);
+    assert!(
+        text.contains("sh q.sh ") && text.contains("sh q.sh (2) "),
+        "{text}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
 fn the_documents_own_code_earns_a_hint_at_its_slip() {
     let folder = tempfile::tempdir().unwrap();
     let Some(homework) = helpers::compiled(&folder, "homework.c", &[]) else {

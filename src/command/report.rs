@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, value_parser};
 use firsthit::diagnosis::TOLERANCE;
 use firsthit::image::MAX_SIZE;
+use firsthit::program::Program;
 use firsthit::report::{
     self, CROWD_KERNELS, MAX_CROWD, NamedScene, Progress, Report, Request, WrongOfRenderer,
 };
@@ -106,9 +107,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     paths
         .filter(|path| !is_standard(path))
         .try_for_each(report::can_save)?;
-    let programs = arguments.programs.start()?.into_iter();
-    let renderers = programs.map(|program| -> Box<dyn Render + Send> { Box::new(program) });
-    let mut renderers: Vec<_> = renderers.collect();
+    let mut programs = arguments.programs.start()?;
+    let renderers = programs.iter_mut();
+    let mut renderers: Vec<_> = renderers
+        .map(|program| -> &mut dyn Render { program })
+        .collect();
     let bar = ProgressBar::new(0).with_style(style());
     let report = report::measure(
         &request,
@@ -120,6 +123,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
     );
     bar.finish_and_clear();
+    let finished = programs.iter_mut().try_for_each(Program::finish);
     let mut report = report?;
     let show = |table: &str| match shows_tables {
         true => print(table),
@@ -140,6 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         shown?;
         plotted?;
         saved?;
+        finished?;
         return grade(&report, most);
     }
     // A file has the report before drivers are called, which may hang; standard output gets it once.
@@ -157,6 +162,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     saved?;
     save_json(&report)?;
     measured?;
+    finished?;
     all_shown
 }
 

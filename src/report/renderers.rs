@@ -51,15 +51,29 @@ pub(super) struct Frames<'a> {
     pub(super) threads: usize,
 }
 
-/// Measures `renderer`, and calls `next` before each frame.
+/// The names of renderers; the second one of a name gets a (2), and so on.
+pub(super) fn names(renderers: &[&mut dyn Render]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for (number, renderer) in renderers.iter().enumerate() {
+        let name = renderer.name();
+        let before = renderers[..number].iter();
+        let same = before.filter(|other| other.name() == name).count();
+        names.push(match same {
+            0 => name.to_owned(),
+            same => format!("{name} ({})", same + 1),
+        });
+    }
+    names
+}
+
+/// Measures `renderer`, which goes by a name, and calls `next` before each frame.
 pub(super) fn measure(
-    renderer: &mut dyn Render,
+    (renderer, name): (&mut (impl Render + ?Sized), &str),
     frames: &Frames<'_>,
     image: &mut Image,
     filler: &mut Filler,
     next: &mut dyn FnMut(&str),
 ) -> Result<RendererRow, ExaminationError> {
-    let name = renderer.name().to_owned();
     let of_this = format!("{}, {name}", frames.name);
     let (mut ms, mut fill_ms, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let (mut summary, mut difference) = (Summary::default(), Difference::default());
@@ -105,7 +119,7 @@ pub(super) fn measure(
     Ok(RendererRow {
         scene: frames.name.to_owned(),
         stage: frames.stage,
-        renderer: name,
+        renderer: name.to_owned(),
         measured,
     })
 }
