@@ -99,6 +99,7 @@ pub mod fault;
 pub mod image;
 pub mod memory;
 mod number;
+mod parting;
 #[cfg(feature = "program")]
 pub mod program;
 #[cfg(test)]

@@ -8,11 +8,11 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::mem;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
-use std::thread;
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::Builder;
+
+use crate::parting;
 
 /// A file on its way to its name. Dropped, it is gone.
 pub(super) enum Unfinished {
@@ -149,9 +149,6 @@ impl Drop for Named {
     }
 }
 
-/// How many milliseconds another thread may take to give a name or to take one away.
-const PATIENCE: u32 = 1000;
-
 /// Removes every file that this process has begun to save and not finished, and lets it begin and
 /// finish no other: for a program that is about to end without coming back to who saves, as on a
 /// signal. Who saves from now on waits for ever.
@@ -159,16 +156,9 @@ const PATIENCE: u32 = 1000;
 /// On Linux there is mostly nothing to remove: unfinished files have no name there, where the file
 /// system can do that.
 pub fn abandon_unfinished() {
-    let names = (0..PATIENCE).find_map(|_| match NAMES.try_lock() {
-        Ok(names) => Some(names),
-        Err(TryLockError::Poisoned(names)) => Some(names.into_inner()),
-        Err(TryLockError::WouldBlock) => {
-            thread::sleep(Duration::from_millis(1));
-            None
-        }
-    });
-    // The thread that holds it may be this one, which has run out of memory.
-    let Some(names) = names else { return };
+    let Some(names) = parting::lock(&NAMES) else {
+        return;
+    };
     for name in &*names {
         let _ = fs::remove_file(name);
     }

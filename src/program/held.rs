@@ -5,10 +5,9 @@ use std::io;
 use std::mem;
 use std::path::{self, Path, PathBuf};
 use std::process::{Child, Command};
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
-use std::thread;
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::parting;
 #[cfg(unix)]
 use rustix::process::{Pid, Signal, kill_process_group};
 
@@ -102,25 +101,15 @@ pub(super) fn remove_folder(folder: &Path) {
     held.folders.retain(|other| other != folder);
 }
 
-/// How many milliseconds another thread may take to start a program or to write its scene.
-const PATIENCE: u32 = 1000;
-
 /// Ends every program that this process has started for pictures, on Unix with its process group,
 /// and removes their scenes: for a program that is about to end without coming back to whoever asks
 /// for pictures, as on a signal. Whoever starts or ends a program from now on waits for ever.
 ///
 /// Elsewhere than on Unix a program leaves when its standard input ends: together with this process.
 pub fn end_all() {
-    let held = (0..PATIENCE).find_map(|_| match HELD.try_lock() {
-        Ok(held) => Some(held),
-        Err(TryLockError::Poisoned(held)) => Some(held.into_inner()),
-        Err(TryLockError::WouldBlock) => {
-            thread::sleep(Duration::from_millis(1));
-            None
-        }
-    });
-    // The thread that holds it may be this one, which has run out of memory.
-    let Some(held) = held else { return };
+    let Some(held) = parting::lock(&HELD) else {
+        return;
+    };
     #[cfg(unix)]
     for group in &held.groups {
         let _ = kill_process_group(*group, Signal::KILL);

@@ -107,7 +107,8 @@ impl Job {
             )));
         }
         let format = Format::of(&path).map_err(wrong)?;
-        let has_place = place(path.as_os_str().as_encoded_bytes()).is_some();
+        let bytes = path.as_os_str().as_encoded_bytes();
+        let has_place = bytes.windows(2).any(|two| two == b"{}");
         let shown = path.display();
         match (format, arguments.frames.clone()) {
             (Format::Apng, None) => Err(wrong(format!(
@@ -189,22 +190,35 @@ pub(super) fn count(frames: &RangeInclusive<u64>) -> u64 {
     (frames.end() - frames.start()).saturating_add(1)
 }
 
-/// Where the first `{}` of a name is.
-fn place(name: &[u8]) -> Option<usize> {
-    name.windows(2).position(|two| two == b"{}")
+/// `pattern` with `number` for each `{}`; the rest need not be text.
+#[cfg(unix)]
+pub(super) fn numbered(pattern: &OsStr, number: &str) -> OsString {
+    use std::os::unix::ffi::{OsStrExt as _, OsStringExt as _};
+    let name = replaced(pattern.as_bytes(), b"{}", number.as_bytes());
+    OsString::from_vec(name)
 }
 
-/// `pattern` with `number` for each `{}`; the rest need not be text.
+/// The same in the units of Windows.
+#[cfg(windows)]
 pub(super) fn numbered(pattern: &OsStr, number: &str) -> OsString {
-    let mut name = OsString::new();
-    let mut rest = pattern.as_encoded_bytes();
-    // SAFETY: these are bytes of an OsStr, which is cut before and after the text `{}` only.
-    let os_str = |bytes| unsafe { OsStr::from_encoded_bytes_unchecked(bytes) };
-    while let Some(place) = place(rest) {
-        name.push(os_str(&rest[..place]));
-        name.push(number);
-        rest = &rest[place + 2..];
+    use std::os::windows::ffi::{OsStrExt as _, OsStringExt as _};
+    let wide = |text: &OsStr| text.encode_wide().collect::<Vec<u16>>();
+    let place = wide("{}".as_ref());
+    let name = replaced(&wide(pattern), &place, &wide(number.as_ref()));
+    OsString::from_wide(&name)
+}
+
+/// `name` with `number` for each `place`.
+fn replaced<Unit: Copy + PartialEq>(name: &[Unit], place: &[Unit], number: &[Unit]) -> Vec<Unit> {
+    let (mut replaced, mut rest) = (Vec::new(), name);
+    while let Some((first, after)) = rest.split_first() {
+        if let Some(after) = rest.strip_prefix(place) {
+            replaced.extend(number);
+            rest = after;
+        } else {
+            replaced.push(*first);
+            rest = after;
+        }
     }
-    name.push(os_str(rest));
-    name
+    replaced
 }
