@@ -7,6 +7,7 @@ mod signals;
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::cell::Cell;
+use std::hint;
 use std::io::{self, Write as _};
 use std::panic::{self, PanicHookInfo};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,6 +25,16 @@ pub(crate) fn install_handlers() {
     panic::set_hook(Box::new(fault));
     #[cfg(unix)]
     signals::watch();
+}
+
+/// The stack that the main thread needs: its largest frame has 120 KiB.
+const STACK: usize = 1 << 19;
+
+/// Takes the main thread's stack before anything else takes the memory. It grows as it is used, and
+/// where the system has no memory for that, it ends the program without a word.
+#[inline(never)]
+pub(crate) fn take_stack() {
+    hint::black_box([0_u8; STACK]);
 }
 
 /// Exits with status 1.

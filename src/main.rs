@@ -14,6 +14,7 @@ use firsthit::program;
 static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> ExitCode {
+    exit::take_stack();
     exit::install_handlers();
     let done = command::run(env::args_os());
     // A thread that nobody waits for may have one.

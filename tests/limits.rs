@@ -25,6 +25,30 @@ fn can_be_loaded(folder: &TempDir, kib: u32) -> bool {
     output.status.success()
 }
 
+/// So many KiB in which it can be loaded; 1 MiB less is not enough.
+fn least_memory(folder: &TempDir) -> u32 {
+    let mut steps = (1..).map(|step| step << 10);
+    steps.find(|&kib| can_be_loaded(folder, kib)).unwrap()
+}
+
+/// The main thread's stack grows, too, and threads that begin ask for memory.
+#[test]
+fn no_signal_ends_the_program_however_much_memory_is_refused() {
+    let folder = folder();
+    let line = "capture --stage 6 --size 500 --through none -o a.exr";
+    for kib in (least_memory(&folder) + (1 << 10)..).step_by(80) {
+        let limit = format!("ulimit -v {kib}");
+        let status = program_after(&limit, &folder, line)
+            .output()
+            .unwrap()
+            .status;
+        match status.code() {
+            Some(0) => break,
+            code => assert_eq!(code, Some(1), "{kib} KiB: {status}"),
+        }
+    }
+}
+
 #[test]
 fn memory_that_is_refused_is_one_line() {
     let folder = folder();
@@ -33,10 +57,7 @@ fn memory_that_is_refused_is_one_line() {
         succeeded(&program(&folder, &line).output().unwrap(), &line);
     }
     let crowd = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/crowd.toml");
-    let least = (1..)
-        .map(|step| step << 10)
-        .find(|&kib| can_be_loaded(&folder, kib))
-        .unwrap();
+    let least = least_memory(&folder);
     let before = names(&folder);
     for line in [
         "capture --stage 6 --size 500 --through none -o a.exr",
