@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::hull::{Hull, MARGIN, each_overlapping_pair, hulls};
+use super::bounding_ball::{BoundingBall, MARGIN, bounding_balls, each_overlapping_pair};
 use super::{Sphere, Surface, Tetrahedron};
 
 /// The casters of each sphere and each face: the solids that may stand between a point of it and
@@ -29,7 +29,7 @@ impl Casters {
         hidden: &[bool],
         facing_light: &[[Ordering; 4]],
     ) -> Self {
-        let hulls = hulls(spheres, tetrahedra);
+        let balls = bounding_balls(spheres, tetrahedra);
         let l = to_light.normalize();
         let lit_faces = |(tetrahedron, facing): (&Tetrahedron, &[Ordering; 4])| {
             [0, 1, 2, 3].map(|k: usize| facing[k].is_gt().then(|| LitFace::new(tetrahedron, k, l)))
@@ -40,12 +40,12 @@ impl Casters {
             on_spheres: vec![Vec::new(); spheres.len()],
             on_faces: vec![Default::default(); tetrahedra.len()],
         };
-        each_overlapping_pair(&hulls, l.any_orthonormal_vector(), |a, b| {
+        each_overlapping_pair(&balls, l.any_orthonormal_vector(), |a, b| {
             if hidden[a] || hidden[b] {
                 return;
             }
-            let Hull { center, radius } = hulls[a];
-            let other = &hulls[b];
+            let BoundingBall { center, radius } = balls[a];
+            let other = &balls[b];
             let between = other.center - center;
             let slack = (other.center.abs() + center.abs()).element_sum() * (MARGIN - 1.0);
             let touching = (other.radius + radius) * MARGIN + slack;
@@ -65,7 +65,7 @@ impl Casters {
                         for (list, face) in lists.zip(&faces[tetrahedron]) {
                             if face
                                 .as_ref()
-                                .is_some_and(|face| face.may_be_shadowed_by(&hulls[caster]))
+                                .is_some_and(|face| face.may_be_shadowed_by(&balls[caster]))
                             {
                                 list.push(caster as u16);
                             }
@@ -116,7 +116,7 @@ impl PrismPlane {
     fn new(at: DVec3, [a, b]: [DVec3; 2], inner: DVec3, magnitude: f64) -> Option<Self> {
         let normal = a.cross(b);
         // A difference rounds by u of its points, which the product multiplies by the other factor;
-        // a cross product rounds three times. 16 u of these magnitudes is more than the sum.
+        // a cross product rounds three times. 32 u of these magnitudes is more than the sum.
         let magnitudes =
             magnitude * (a.abs() + b.abs()).element_sum() + (a.length() + magnitude) * b.length();
         let error = 16.0 * f64::EPSILON * magnitudes;
@@ -150,7 +150,7 @@ impl PrismPlane {
     }
 
     /// Whether a ball certainly lies above the plane.
-    fn is_outside(&self, ball: &Hull) -> bool {
+    fn is_outside(&self, ball: &BoundingBall) -> bool {
         let height = self.normal.dot(ball.center - self.at);
         height > ball.radius * MARGIN * (self.length + self.error) + self.slack(ball.center)
     }
@@ -172,7 +172,7 @@ impl LitFace {
         }
     }
 
-    fn may_be_shadowed_by(&self, caster: &Hull) -> bool {
+    fn may_be_shadowed_by(&self, caster: &BoundingBall) -> bool {
         let mut planes = self.planes.iter().flatten();
         !planes.any(|plane| plane.is_outside(caster))
     }
@@ -192,6 +192,11 @@ pub(crate) struct SurfaceCasters {
     all: Vec<u16>,
 }
 
+/// Where the x or z of a point of the surface lies in the grid, counted in cells.
+fn cell_at(x: f64, half_width: f64) -> f64 {
+    (x / half_width + 1.0) / 2.0 * CELLS as f64
+}
+
 impl SurfaceCasters {
     /// The casters among the solids that are not hidden.
     pub(super) fn new(
@@ -207,20 +212,20 @@ impl SurfaceCasters {
         let l = to_light.normalize();
         // The cells that a solid's shadow may reach, and their neighbours: so `near` may take a
         // neighbour for the cell of a point.
-        let cells = |hull: &Hull| {
-            let up = (hull.center.y - height) * l.y.signum();
-            let slack = (hull.center.y.abs() + height.abs()) * (MARGIN - 1.0);
-            if up < -(hull.radius * MARGIN + slack) {
+        let cells = |ball: &BoundingBall| {
+            let up = (ball.center.y - height) * l.y.signum();
+            let slack = (ball.center.y.abs() + height.abs()) * (MARGIN - 1.0);
+            if up < -(ball.radius * MARGIN + slack) {
                 return None;
             }
-            // The hull's shadow is an ellipse; half its length is the radius over the light's rise.
-            let distance = (hull.center.y - height) / l.y;
-            let middle = hull.center - l * distance;
-            let magnitudes = hull.center.abs().element_sum() + distance.abs();
-            let half = (hull.radius / l.y.abs()) * MARGIN + magnitudes * (MARGIN - 1.0);
+            // The ball's shadow is an ellipse; half its length is the radius over the light's rise.
+            let distance = (ball.center.y - height) / l.y;
+            let middle = ball.center - l * distance;
+            let magnitudes = ball.center.abs().element_sum() + distance.abs();
+            let half = (ball.radius / l.y.abs()) * MARGIN + magnitudes * (MARGIN - 1.0);
             let ends = |middle: f64| {
-                let cell = |x: f64| (x / half_width + 1.0) / 2.0 * CELLS as f64;
-                let (from, to) = (cell(middle - half) - 2.0, cell(middle + half) + 2.0);
+                let [from, to] = [middle - half, middle + half].map(|x| cell_at(x, half_width));
+                let (from, to) = (from - 2.0, to + 2.0);
                 if from.is_nan() || to.is_nan() {
                     return 0..CELLS;
                 }
@@ -229,15 +234,15 @@ impl SurfaceCasters {
             };
             Some((ends(middle.x), ends(middle.z)))
         };
-        let hulls = hulls(spheres, tetrahedra);
+        let balls = bounding_balls(spheres, tetrahedra);
         let mut of_cells = vec![Vec::new(); CELLS * CELLS];
         let mut all = Vec::new();
-        for (solid, hull) in hulls
+        for (solid, ball) in balls
             .iter()
             .enumerate()
             .filter(|(solid, _)| !hidden[*solid])
         {
-            if let Some((columns, rows)) = cells(hull)
+            if let Some((columns, rows)) = cells(ball)
                 && !columns.is_empty()
                 && !rows.is_empty()
             {
@@ -270,13 +275,12 @@ impl SurfaceCasters {
 
     /// The casters of a point of the surface whose x and z lie between these bounds.
     pub(crate) fn near(&self, x: (f64, f64), z: (f64, f64)) -> &[u16] {
-        let cell = |(from, to): (f64, f64)| {
-            let cell = |x: f64| (x / self.half_width + 1.0) / 2.0 * CELLS as f64;
-            let is_narrow = cell(to) - cell(from) < 1.0;
+        let only_cell = |(from, to): (f64, f64)| {
+            let [from, to] = [from, to].map(|x| cell_at(x, self.half_width));
             // The point is in this cell or in a neighbour.
-            is_narrow.then(|| (cell(from).max(0.0) as usize).min(CELLS - 1))
+            (to - from < 1.0).then(|| (from.max(0.0) as usize).min(CELLS - 1))
         };
-        match (cell(x), cell(z)) {
+        match (only_cell(x), only_cell(z)) {
             (Some(column), Some(row)) => {
                 let cell = row * CELLS + column;
                 &self.casters[self.starts[cell] as usize..self.starts[cell + 1] as usize]

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use dashu_ratio::Relaxed;
 use glam::DVec3;
 
-use super::hull::{MARGIN, each_overlapping_pair, hulls};
+use super::bounding_ball::{MARGIN, bounding_balls, each_overlapping_pair};
 use super::rational::{Plane, dot, exact, minus, sign};
 use super::{Sphere, Tetrahedron};
 
@@ -23,18 +23,18 @@ enum AnySolid<'s> {
 /// For each solid, spheres first, whether it lies inside of another, and is hidden also at points
 /// that both have in common.
 pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
-    let hulls = hulls(spheres, tetrahedra);
+    let balls = bounding_balls(spheres, tetrahedra);
     let solid = |number: usize| match spheres.get(number) {
         Some(sphere) => AnySolid::Sphere(sphere),
         None => AnySolid::Tetrahedron(&tetrahedra[number - spheres.len()]),
     };
-    let mut hidden = vec![false; hulls.len()];
-    each_overlapping_pair(&hulls, DVec3::X, |a, b| {
+    let mut hidden = vec![false; balls.len()];
+    each_overlapping_pair(&balls, DVec3::X, |a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
-            let (small, large) = (&hulls[inner], &hulls[outer]);
+            let (small, large) = (&balls[inner], &balls[outer]);
             let slack = (small.center.abs() + large.center.abs()).element_sum() * (MARGIN - 1.0);
             let distance = small.center.distance(large.center);
-            // A tetrahedron may lie inside although its hull does not.
+            // A tetrahedron may lie inside although its ball does not.
             let may = match (solid(inner), solid(outer)) {
                 (AnySolid::Sphere(_), _) => {
                     distance + small.radius <= large.radius * MARGIN + slack

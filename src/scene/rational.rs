@@ -6,19 +6,19 @@ use dashu_base::Sign;
 use dashu_ratio::{RBig, Relaxed};
 use glam::DVec3;
 
-pub(super) type Rational = [Relaxed; 3];
+pub(super) type RationalVector = [Relaxed; 3];
 
 /// The vector of these f64s, taken exactly; one that is not finite counts as 0.
-pub(super) fn exact(v: DVec3) -> Rational {
+pub(super) fn exact(v: DVec3) -> RationalVector {
     v.to_array()
         .map(|x| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO))
 }
 
-pub(super) fn minus(a: &Rational, b: &Rational) -> Rational {
+pub(super) fn minus(a: &RationalVector, b: &RationalVector) -> RationalVector {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
 }
 
-pub(super) fn cross(a: &Rational, b: &Rational) -> Rational {
+pub(super) fn cross(a: &RationalVector, b: &RationalVector) -> RationalVector {
     [
         &a[1] * &b[2] - &a[2] * &b[1],
         &a[2] * &b[0] - &a[0] * &b[2],
@@ -26,7 +26,7 @@ pub(super) fn cross(a: &Rational, b: &Rational) -> Rational {
     ]
 }
 
-pub(super) fn dot(a: &Rational, b: &Rational) -> Relaxed {
+pub(super) fn dot(a: &RationalVector, b: &RationalVector) -> Relaxed {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
@@ -40,13 +40,13 @@ pub(super) fn sign(x: &Relaxed) -> Ordering {
 
 /// The points x with normal · x = offset.
 pub(super) struct Plane {
-    pub(super) normal: Rational,
+    pub(super) normal: RationalVector,
     pub(super) offset: Relaxed,
 }
 
 impl Plane {
     /// The plane of face `k`, its normal outward.
-    pub(super) fn of_face(vertices: &[Rational; 4], k: usize) -> Plane {
+    pub(super) fn of_face(vertices: &[RationalVector; 4], k: usize) -> Plane {
         let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &vertices[i]);
         let normal = cross(&minus(b, a), &minus(c, a));
         let outward = sign(&dot(&normal, &minus(&vertices[k], a))).is_lt();

@@ -47,7 +47,7 @@
 //!
 //! A new kind of solid, such as a cylinder, would need
 //!
-//! - in `scene`: a type and its refusals (`file`), a bounding ball (`hull`), a test whether it lies
+//! - in `scene`: a type and its refusals (`file`), a bounding ball (`bounding_ball`), a test whether it lies
 //!   inside of others (`hidden`), what is exactly decided about it (`exact`);
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`,
 //!   `view`, `extent`, `pixel`, `palette` and `explain` name every kind of solid;

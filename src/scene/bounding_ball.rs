@@ -8,21 +8,21 @@ use super::{Sphere, Tetrahedron};
 pub(super) const MARGIN: f64 = 1.0 + 1e-12;
 
 /// A bounding ball of a solid.
-pub(super) struct Hull {
+pub(super) struct BoundingBall {
     pub(super) center: DVec3,
     pub(super) radius: f64,
 }
 
-/// The hulls of all solids, spheres first.
-pub(super) fn hulls(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<Hull> {
-    let of_sphere = |sphere: &Sphere| Hull {
+/// The bounding balls of all solids, spheres first.
+pub(super) fn bounding_balls(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<BoundingBall> {
+    let of_sphere = |sphere: &Sphere| BoundingBall {
         center: sphere.center,
         radius: sphere.radius,
     };
     let of_tetrahedron = |tetrahedron: &Tetrahedron| {
         let center = tetrahedron.vertices.iter().sum::<DVec3>() / 4.0;
         let distances = tetrahedron.vertices.map(|vertex| vertex.distance(center));
-        Hull {
+        BoundingBall {
             center,
             radius: distances.into_iter().fold(0.0, f64::max) * MARGIN,
         }
@@ -33,20 +33,20 @@ pub(super) fn hulls(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<Hull>
         .collect()
 }
 
-/// Calls `pair` with the numbers of any two hulls whose projections onto a line along `direction`,
+/// Calls `pair` with the numbers of any two balls whose projections onto a line along `direction`,
 /// of length 1, may overlap.
 pub(super) fn each_overlapping_pair(
-    hulls: &[Hull],
+    balls: &[BoundingBall],
     direction: DVec3,
     mut pair: impl FnMut(usize, usize),
 ) {
-    let mut projections: Vec<(f64, f64, usize)> = hulls
+    let mut projections: Vec<(f64, f64, usize)> = balls
         .iter()
         .enumerate()
-        .map(|(number, hull)| {
-            let slack = hull.center.abs().element_sum() * (MARGIN - 1.0);
-            let half = hull.radius * MARGIN + slack;
-            let middle = hull.center.dot(direction);
+        .map(|(number, ball)| {
+            let slack = ball.center.abs().element_sum() * (MARGIN - 1.0);
+            let half = ball.radius * MARGIN + slack;
+            let middle = ball.center.dot(direction);
             (middle - half, middle + half, number)
         })
         .collect();
