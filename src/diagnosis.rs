@@ -83,7 +83,8 @@ pub struct Diagnosis {
 impl<'a> Examination<'a> {
     /// Traces the truth: `scene` in `stage`, seen at angle `alpha` in radians, with `threads`
     /// threads, 0 being one a core. A pixel of `image` counts as that of a decision if every sample
-    /// is at most `tolerance` from that decision's; [`TOLERANCE`] is the usual one.
+    /// is at most `tolerance` from that decision's; [`TOLERANCE`] is the usual one. With a NaN or a
+    /// negative number, every pixel is wrong.
     ///
     /// # Errors
     /// [`ExaminationError::Trace`] where `alpha` is not finite or there are no threads,

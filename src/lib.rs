@@ -31,8 +31,7 @@
 //!
 //! # From scene to screen
 //!
-//! Each bold word above is one type and one place, and each place knows only those before it: the
-//! tracer knows no OpenGL, the screen knows no spheres.
+//! Each bold word above is one place. The tracer knows no OpenGL, the screen knows no spheres.
 //!
 //! | place | what is there |
 //! | --- | --- |
@@ -75,8 +74,10 @@
 //! f64 α taken exactly, and every number of a scene is its f64 taken exactly. What the ray meets
 //! first, whether a point is in shadow, what the surface mirrors: these are signs of real numbers,
 //! and touching counts as meeting. A sample is the real number that equation 4-1 gives, rounded
-//! once to the nearest f32. [`Kernel::Exact`] returns just that, on every machine, with any vector
-//! instructions and any number of threads.
+//! once to the nearest f32. What is 0 for every α is decided in rationals; beyond that, a sign that
+//! 8192 bits leave open counts as 0, and a sample as halfway between two f32s.
+//! [`Kernel::Exact`] returns just that, on every machine, with any vector instructions and any
+//! number of threads.
 //!
 //! # What was left out, and why
 //!
@@ -89,7 +90,8 @@
 //! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which
 //!   nothing but what is certain gets into a picture, uses it where the processor has it.
 //! - No tree over the solids: rays have three directions, so every solid knows the rows and columns
-//!   that it can touch, and a grid in the picture of each direction is a complete index.
+//!   that it can touch. What can stand between the surface and the light is found in a grid over the
+//!   surface, what can stand between a solid and the light in a list that a sweep makes once.
 
 pub mod camera;
 pub mod diagnosis;

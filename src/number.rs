@@ -19,7 +19,7 @@ pub(crate) use double_double::DoubleDouble;
 pub(crate) use expression::{Expression, Session};
 pub use sine::sin_cos;
 
-/// A number cannot tell a sign or a rounding: what it knows of the truth allows more than one.
+/// The bound on a number's error does not determine the sign or the rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Doubt;
 
@@ -190,7 +190,7 @@ fn round_sum(high: f64, low: f64) -> f32 {
     if low > 0.0 { upper } else { lower }
 }
 
-/// Whether all of these hold: one that certainly does not makes every doubt about the others idle.
+/// Whether all of these hold. One that certainly does not decides, whatever else is in doubt.
 pub(crate) fn all<D>(decisions: impl IntoIterator<Item = Result<bool, D>>) -> Result<bool, D> {
     let mut doubt = None;
     for decision in decisions {
@@ -203,7 +203,7 @@ pub(crate) fn all<D>(decisions: impl IntoIterator<Item = Result<bool, D>>) -> Re
     doubt.map_or(Ok(true), Err)
 }
 
-/// Whether any of these holds: one that certainly does makes every doubt about the others idle.
+/// Whether any of these holds. One that certainly does decides, whatever else is in doubt.
 pub(crate) fn any<D>(decisions: impl IntoIterator<Item = Result<bool, D>>) -> Result<bool, D> {
     Ok(!all(decisions
         .into_iter()

@@ -1,4 +1,4 @@
-//! A lock for a program that is about to end, whatever the thread does that holds it.
+//! A lock with a timeout, for a program that is about to end while another thread may hold it.
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::thread;

@@ -75,7 +75,8 @@ pub trait Render {
     fn name(&self) -> &str;
 
     /// Makes the picture of `scene` in `stage`, seen at angle `alpha` in radians, and writes all of
-    /// `image` with it: N × N pixels of red, green and blue, rows from the bottom.
+    /// `image` with it: N × N pixels of red, green and blue, rows from the bottom. N is the size of
+    /// `image`, and stays so.
     ///
     /// # Errors
     /// [`RenderError`] where there is no such picture; what is in `image` then is not looked at.

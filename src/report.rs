@@ -96,7 +96,8 @@ impl NamedScene {
 /// What is to be measured: every kernel on every scene in every stage.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The scenes.
+    /// The scenes, in the order of the report. Where these, the stages or the kernels are none,
+    /// nothing is measured.
     pub scenes: Vec<NamedScene>,
     /// The stages.
     pub stages: Vec<Stage>,
@@ -104,7 +105,7 @@ pub struct Request {
     pub kernels: Vec<Kernel>,
     /// N, 1 to [`MAX_SIZE`](crate::image::MAX_SIZE).
     pub size: u32,
-    /// The frames of the animation.
+    /// The frames of the animation. Each takes 8 bytes while it is measured.
     pub frames: RangeInclusive<u64>,
     /// The number of threads to measure beside one; 0 is one a core.
     pub threads: usize,
@@ -491,8 +492,9 @@ pub fn can_save(path: impl AsRef<Path>) -> Result<(), SaveError> {
 }
 
 impl Report {
-    /// Measures what it costs to display a frame, traced by the first kernel on the first scene in
-    /// the first stage. `watch` is called with `true` before each call of a driver that may hang,
+    /// Measures what it costs to display a frame, traced by the first kernel but
+    /// [`Kernel::Listing`] on the first scene in the first stage; nothing where there is none.
+    /// `watch` is called with `true` before each call of a driver that may hang,
     /// and with `false` after it.
     ///
     /// # Errors

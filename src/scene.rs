@@ -1,12 +1,16 @@
 //! What exists: solids, a surface, a light, one material.
+//!
+//! Lengths have no unit. A coordinate is 0 or of magnitude 1e-30 to 1e6. The three amounts of a
+//! colour, an intensity or a coefficient are red, green and blue, each 0 or 1e-30 to 1e6, linear and
+//! not clamped. [`Scene::from_toml`] lists all rules, and [`SceneBuilder::build`] keeps them, too.
 
+mod bounding_ball;
 mod builder;
 mod casters;
 mod error;
 mod exact;
 mod file;
 mod hidden;
-mod hull;
 mod rational;
 mod rules;
 
@@ -54,14 +58,15 @@ pub struct Surface {
     pub half_width: f64,
     /// Its colour where it mirrors nothing.
     pub color: DVec3,
-    /// The weight of the mirrored colour.
+    /// The weight of the mirrored colour, 0 or 1e-30 to 1e6.
     pub reflectance: f64,
 }
 
 /// The light: infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The way the light travels: any length but 0.
+    /// The way the light travels: any length but 0; components that are not 0 differ by at most a
+    /// factor 1e30.
     pub direction: DVec3,
     /// I of equation 4-1.
     pub intensity: DVec3,

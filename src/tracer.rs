@@ -4,8 +4,10 @@
 //! [`Kernel`] chooses the number, and what happens where it leaves a doubt. To be read in this
 //! order:
 //!
+//! - `kernel`, `decision`, `vector`, `line`: the kernels, what a pixel can show, points and rays;
 //! - `frame`, `view`: view space, in which the scene and its mirror image are turned by α;
-//! - `line`, `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1;
+//! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
+//!   colours that many pixels share;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
 //! - `pixel`: what a pixel shows: the definition of the picture;
 //! - `ladder`: a pixel in f64 with bounds; in doubt, in double-doubles; still in doubt, in
@@ -13,8 +15,15 @@
 //! - `scanline`: whole rows at once: nearly all pixels are made there, and few by the ladder;
 //! - `listing`: the document's code as printed, slips included; it shares nothing with the rest;
 //! - `frame_work`: a frame in the arithmetic of each kernel;
-//! - `pool`, `target`, `stream`: threads, and the memory of rows; `explain`: a pixel in words;
-//!   `colors`: what other decisions would look like; `mistaken`: what mistakes look like.
+//! - `pool`, `target`, `stream`, `arena`: threads, the memory of rows and of what a frame needs;
+//! - `progress`, `tally`: how far a frame is, and what it took;
+//! - `explain`: a pixel in words; `colors`: what other decisions would look like; `mistaken`: what
+//!   mistakes look like.
+//!
+//! [`Tracer::trace`] gives the frame to `with_frame`, which chooses the numbers; `trace_into` the
+//! image to the threads of the pool, in bands of rows; `RowTracer` traces a band.
+//!
+//! `tests/oracle.rs` evaluates the picture a second time. The oracle shares no code with this.
 
 mod arena;
 mod colors;
@@ -51,7 +60,8 @@ use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, PoisonError};
 
-use crate::{Image, Scene, Stage};
+use crate::image::MAX_SIZE;
+use crate::{Image, Scene, Stage, memory};
 use arena::Arena;
 pub(crate) use colors::{Colors, with_colors};
 pub use decision::{Decision, Seen};
@@ -81,7 +91,7 @@ pub struct Tracer {
     simd: Simd,
     progress: Progress,
     tally: Tally,
-    /// The mutex is never locked: it makes `Tracer` `Sync`, so that threads can explain pixels.
+    /// Only `get_mut` is used: the mutex makes `Tracer` `Sync`, so that threads can explain pixels.
     arena: Mutex<Arena>,
     /// The rows of the frame that [`Tracer::retrace`] traced last.
     history: Vec<RowHistory>,
@@ -90,11 +100,11 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// A tracer with `threads` threads, the caller's among them; 0 is one a core. Their number
-    /// changes no bit of a picture.
+    /// A tracer with `threads` threads, the caller's among them, at most 4096; 0 is one a core, or
+    /// fewer where the system refuses some. Their number changes no bit of a picture.
     ///
     /// # Errors
-    /// [`TraceError::Threads`] where the system refuses the threads.
+    /// [`TraceError::Threads`] where there are more than 4096, or the system refuses them.
     pub fn new(kernel: Kernel, threads: usize) -> Result<Tracer, TraceError> {
         let pool = Pool::new(threads).map_err(|source| TraceError::Threads { threads, source })?;
         let local = std::iter::repeat_with(Mutex::default);
@@ -127,7 +137,7 @@ impl Tracer {
         self.kernel
     }
 
-    /// What the frame traced last took.
+    /// What the frame traced last took; zeros before the first. Explained pixels do not count.
     pub fn tally(&self) -> Tally {
         self.tally
     }
@@ -196,7 +206,7 @@ impl Tracer {
     /// As [`Tracer::trace`]. Returns the decision of each of the N² pixels, rows from the bottom.
     ///
     /// # Errors
-    /// As [`Tracer::trace`].
+    /// As [`Tracer::trace`], and [`TraceError::Memory`] where the decisions do not fit.
     pub fn trace_with_decisions(
         &mut self,
         scene: &Scene,
@@ -204,7 +214,9 @@ impl Tracer {
         alpha: f64,
         image: &mut Image,
     ) -> Result<Vec<Decision>, TraceError> {
-        let mut decisions = vec![Decision::Background; image.samples().len() / 3];
+        let (pixels, mut decisions) = (image.samples().len() / 3, Vec::new());
+        memory::reserve(&mut decisions, pixels).map_err(|_| TraceError::Memory { pixels })?;
+        decisions.resize(pixels, Decision::Background);
         self.trace_frame(
             scene,
             stage,
@@ -218,11 +230,11 @@ impl Tracer {
 
     /// One pixel, worked through for a person to read: its rays, all that they meet, the decision
     /// and the arithmetic that settled it, each term of equation 4-1, the samples. All numbers come
-    /// from the code that traces.
+    /// from the code that traces. `size` is N, 1 to [`MAX_SIZE`].
     ///
     /// # Errors
     /// [`TraceError::Angle`] where `alpha` is not finite, [`TraceError::Pixel`] where a picture of
-    /// `size` has no such pixel.
+    /// `size` has no such pixel, or `size` is larger.
     pub fn explain(
         &self,
         scene: &Scene,
@@ -234,7 +246,7 @@ impl Tracer {
         if !alpha.is_finite() {
             return Err(TraceError::Angle(alpha));
         }
-        if column >= size || row >= size {
+        if size > MAX_SIZE || column >= size || row >= size {
             return Err(TraceError::Pixel { column, row, size });
         }
         let arena = Arena::default();

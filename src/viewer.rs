@@ -62,7 +62,7 @@ pub struct Options {
     pub scene_file: Option<PathBuf>,
     /// The stage it opens on.
     pub stage: Stage,
-    /// N: pictures are N × N pixels.
+    /// N: pictures are N × N pixels, 1 to [`MAX_SIZE`](crate::image::MAX_SIZE).
     pub size: u32,
     /// The kernel that the viewer opens on; if there is none, the first of the renderers that it is
     /// given, else the default kernel.
@@ -71,7 +71,7 @@ pub struct Options {
     pub threads: usize,
     /// How stage 7 advances.
     pub pace: Pace,
-    /// Leave after so many frames, at least one; a static stage is then drawn again and again
+    /// Leave after so many frames, 0 counting as 1; a static stage is then drawn again and again
     /// until it has had them.
     pub exit_after_frames: Option<u64>,
 }

@@ -68,8 +68,7 @@ impl DoubleDouble {
         DoubleDouble { error: 0.0, ..self }
     }
 
-    /// A number from `high` + `low`, or less by an ulp of `low`, to `high` + `up_to`, or more by
-    /// one.
+    /// Encloses all from `high` + `low` to `high` + `up_to`, each end widened by an ulp.
     pub(super) fn around(high: f64, low: f64, up_to: f64) -> DoubleDouble {
         let ulps = 4.0 * UNIT_ROUNDOFF * (low.abs() + up_to.abs());
         DoubleDouble {

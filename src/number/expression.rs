@@ -29,8 +29,8 @@ const BITS: [usize; 7] = [192, 384, 768, 1536, 3072, 6144, 8192];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expression {
     place: usize,
-    /// The same number, which answers where it is in no doubt: mostly it is not a whole formula
-    /// that is doubtful, but one of its parts.
+    /// A double-double of the same value, which answers first: most parts of a formula in doubt
+    /// are not in doubt themselves.
     near: DoubleDouble,
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Measured, Pipeline, Report, Row, Spread, Timing};
+use crate::Kernel;
 
 impl Report {
     /// The kernels as tables, aligned for a terminal: what they were measured on, times and errors.
@@ -132,8 +133,12 @@ impl Report {
         cells.extend([digits(all.max_abs), digits(all.mean_abs())]);
         // A rung leaves in doubt what the next ones settle.
         let tally = errors.tally;
-        let doubt = [tally.double_double + tally.arbitrary, tally.arbitrary];
-        cells.extend(doubt.map(|n| n.to_string()));
+        cells.push(match row.kernel {
+            // f64 is not tried.
+            Kernel::Reference => "–".to_owned(),
+            _ => (tally.double_double + tally.arbitrary).to_string(),
+        });
+        cells.push(tally.arbitrary.to_string());
         cells.extend([tally.edges, tally.spans].map(|n| digits(self.per_row(n))));
         cells
     }

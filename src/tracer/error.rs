@@ -2,6 +2,8 @@
 
 use std::io;
 
+use crate::image::MAX_SIZE;
+
 /// A tracer that cannot be made, or a frame that cannot be traced.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -9,8 +11,8 @@ pub enum TraceError {
     /// α is a NaN or an infinity.
     #[error("α = {0} is not an angle: give a finite number of radians")]
     Angle(f64),
-    /// The pixel is not in the picture.
-    #[error("column {column}, row {row} is not in a picture of {size} × {size} pixels: both count from 0 to {}", size.saturating_sub(1))]
+    /// The pixel is not in the picture, or there is no picture of this size.
+    #[error("column {column}, row {row} is not in a picture of {size} × {size} pixels: both count from 0 to {}", (*size).min(MAX_SIZE).saturating_sub(1))]
     Pixel {
         /// Its column, counted from the left.
         column: u32,
@@ -37,6 +39,12 @@ pub enum TraceError {
     /// image show it, and some what was there before.
     #[error("the frame was cancelled: trace it again")]
     Cancelled,
+    /// There is no memory for the decisions.
+    #[error("the decisions of {pixels} pixels do not fit in memory: choose a smaller picture")]
+    Memory {
+        /// N².
+        pixels: usize,
+    },
     /// The worker threads could not be started.
     #[error("{threads} threads cannot be started: {source}; ask for fewer")]
     Threads {

@@ -14,7 +14,8 @@ pub enum Kernel {
     /// The document's listings as printed, slips included: the baseline. Two spheres, one
     /// tetrahedron and a surface only.
     Listing,
-    /// The reference that errors are measured against: as exact, but never by f64.
+    /// The reference that errors are measured against: double-doubles with a bound on their error,
+    /// then arbitrary precision. f64 is not tried.
     Reference,
 }
 

@@ -1,4 +1,4 @@
-//! One pixel: first hit, shading, shadow and mirror, as far as the stage has them.
+//! What a pixel shows, in every stage and every arithmetic: the definition of the picture.
 
 use std::cmp::Ordering;
 use std::iter;

@@ -15,14 +15,14 @@ struct State {
 }
 
 impl Progress {
-    /// How many rows of the frame are done.
+    /// How many rows of the frame are done, 0 to N, in steps of some rows; 0 before the first frame.
     pub fn rows(&self) -> u32 {
         self.0.rows.load(Relaxed)
     }
 
     /// Has the frame that is traced now end after the row that each thread is in, with
     /// [`TraceError::Cancelled`](super::TraceError::Cancelled). The frames after it are traced as
-    /// ever.
+    /// ever; between frames this has no effect.
     pub fn cancel(&self) {
         self.0.is_cancelled.store(true, Relaxed);
     }

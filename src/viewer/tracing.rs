@@ -119,7 +119,7 @@ enum Engine {
     },
 }
 
-/// The rows that were written, and the pixels that were in doubt.
+/// The rows that were written, and what the frame took.
 type Written = (Range<u32>, Tally);
 
 impl Engine {

@@ -99,7 +99,7 @@ impl<'r> Row<'r> {
         }
     }
 
-    /// Ends the last row. Returns how many pixels were in doubt.
+    /// Writes what is pending. Returns the tally of the band.
     pub(crate) fn finish_all(mut self) -> Tally {
         self.write_pending();
         self.tally
