@@ -104,7 +104,7 @@ pub(crate) enum Failure {
         b: PathBuf,
         /// Those of [`firsthit::image::LoadedImage`].
         corners: [[i32; 2]; 2],
-        size: u32,
+        size: [u32; 2],
     },
     #[error(
         "{} and {}: neither has a layer {layer}, nor any with a name: leave out --layer",
@@ -138,11 +138,15 @@ pub(crate) enum Failure {
     Terminal,
 }
 
-/// The first and the last pixel of a data window of `size` × `size` pixels, from the upper left.
-fn window(corner: [i32; 2], size: u32) -> String {
+/// The first and the last pixel of a data window of this width and height, from the upper left.
+fn window(corner: [i32; 2], size: [u32; 2]) -> String {
     let [left, top] = corner.map(i64::from);
-    let more = i64::from(size) - 1;
-    format!("({left}, {top}) to ({}, {})", left + more, top + more)
+    let [width, height] = size.map(i64::from);
+    format!(
+        "({left}, {top}) to ({}, {})",
+        left + width - 1,
+        top + height - 1
+    )
 }
 
 /// Does what the words of a command line say, of which the first is the program's name.

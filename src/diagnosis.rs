@@ -129,7 +129,7 @@ impl<'a> Examination<'a> {
         let size = self.image.size();
         let mut verdicts = Vec::new();
         memory::reserve(&mut verdicts, self.decisions.len())
-            .map_err(|_| ImageError::Memory(size))?;
+            .map_err(|_| ImageError::Memory(size, size))?;
         let mut summary = Summary::default();
         let mut largest = 0.0;
         self.with_candidates(|candidates| {

@@ -10,17 +10,28 @@ mod heat;
 mod pixels;
 mod scale;
 
-use crate::Image;
-use crate::image::display_byte;
+use crate::image::{Raster, display_byte};
 #[cfg(feature = "program")]
 pub use heat::{HeatError, save_heat};
 pub use pixels::{PixelDifference, WorstPixel, limit};
 pub use scale::error_color;
 
-/// Two pictures that cannot be compared.
+/// Two pictures that cannot be compared: the width and the height of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{0} × {0} and {1} × {1} pixels cannot be compared: give two pictures of one size")]
-pub struct SizesDiffer(pub u32, pub u32);
+#[error(
+    "{} × {} and {} × {} pixels cannot be compared: give two pictures of one size",
+    .0[0], .0[1], .1[0], .1[1]
+)]
+pub struct SizesDiffer(pub [u32; 2], pub [u32; 2]);
+
+/// Refuses pictures of different sizes.
+fn check_sizes(image: &Raster, truth: &Raster) -> Result<(), SizesDiffer> {
+    let [size, true_size] = [image, truth].map(|raster| [raster.width(), raster.height()]);
+    match size == true_size {
+        true => Ok(()),
+        false => Err(SizesDiffer(size, true_size)),
+    }
+}
 
 /// How many floats `a` is from `b`: both zeros are one, an infinity is the one after the largest
 /// float, and all NaNs are one. `None` where only one of the two is a NaN: nothing tells how far
@@ -94,10 +105,8 @@ impl Difference {
     ///
     /// # Errors
     /// [`SizesDiffer`] unless both have one size.
-    pub fn of(image: &Image, truth: &Image) -> Result<Difference, SizesDiffer> {
-        if image.size() != truth.size() {
-            return Err(SizesDiffer(image.size(), truth.size()));
-        }
+    pub fn of(image: &Raster, truth: &Raster) -> Result<Difference, SizesDiffer> {
+        check_sizes(image, truth)?;
         let mut difference = Difference::default();
         for (&sample, &truth) in image.samples().iter().zip(truth.samples()) {
             difference.add(sample, truth);

@@ -1,4 +1,4 @@
-//! The picture: N × N pixels of three linear 32-bit floats.
+//! The picture: pixels of three linear 32-bit floats, N × N where a tracer makes it.
 
 mod animation;
 mod error;
@@ -6,6 +6,7 @@ mod exr;
 mod format;
 mod load;
 pub(crate) mod png;
+mod raster;
 mod save;
 mod srgb;
 mod stream;
@@ -13,49 +14,53 @@ mod unfinished;
 pub(crate) mod whole_file;
 
 use std::fmt;
-
-use crate::memory;
+use std::ops::Deref;
 
 pub use animation::{Animation, AnimationWriter};
 pub use error::SaveError;
 pub use format::Format;
 pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};
+pub use raster::Raster;
 pub use srgb::decode_srgb;
 pub use unfinished::abandon_unfinished;
 
 /// The largest number of pixels along a side.
 pub const MAX_SIZE: u32 = 16384;
 
-/// A square picture of N × N pixels, each red, green and blue as linear floats: not clamped, not
-/// gamma-encoded.
-///
-/// Rows go from the **bottom** to the top, as `glDrawPixels` and `glTexSubImage2D` lay them out; a
-/// row goes from left to right.
+/// The square picture that a tracer writes to: a [`Raster`] of N × N pixels.
 #[derive(Clone)]
 pub struct Image {
-    size: u32,
-    samples: Vec<f32>,
+    raster: Raster,
     /// The number of the frame that a tracer has left here, to trace the next one over it; 0 after
     /// anyone else could write.
     frame: u64,
 }
 
-impl PartialEq for Image {
-    fn eq(&self, other: &Image) -> bool {
-        self.size == other.size && self.samples == other.samples
+/// Whatever a raster can be asked, an image can: its samples, its difference to another, a file.
+impl Deref for Image {
+    type Target = Raster;
+
+    fn deref(&self) -> &Raster {
+        &self.raster
     }
 }
 
-/// An image that cannot be made.
+impl PartialEq for Image {
+    fn eq(&self, other: &Image) -> bool {
+        self.raster == other.raster
+    }
+}
+
+/// A picture that cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// N is not from 1 to [`MAX_SIZE`].
-    #[error("a picture of {0} × {0} pixels cannot be made: choose a size from 1 to {MAX_SIZE}")]
-    Size(u32),
-    /// There is not enough memory for N × N × 3 floats.
-    #[error("not enough memory for a picture of {0} × {0} pixels: choose a smaller size")]
-    Memory(u32),
+    /// Its width or its height is not from 1 to [`MAX_SIZE`].
+    #[error("a picture of {0} × {1} pixels cannot be made: choose a size from 1 to {MAX_SIZE}")]
+    Size(u32, u32),
+    /// There is not enough memory for three floats a pixel of this width and height.
+    #[error("not enough memory for a picture of {0} × {1} pixels: choose a smaller size")]
+    Memory(u32, u32),
 }
 
 impl Image {
@@ -65,34 +70,18 @@ impl Image {
     /// [`ImageError::Size`] unless 1 ≤ `size` ≤ [`MAX_SIZE`], [`ImageError::Memory`] where the
     /// floats do not fit.
     pub fn new(size: u32) -> Result<Image, ImageError> {
-        if !(1..=MAX_SIZE).contains(&size) {
-            return Err(ImageError::Size(size));
-        }
-        let length = size as usize * size as usize * 3;
-        let mut samples = Vec::new();
-        memory::reserve(&mut samples, length).map_err(|_| ImageError::Memory(size))?;
-        samples.resize(length, 0.0);
-        Ok(Image {
-            size,
-            samples,
-            frame: 0,
-        })
+        let raster = Raster::new(size, size)?;
+        Ok(Image { raster, frame: 0 })
     }
 
     /// N, the number of pixels along a side.
     pub fn size(&self) -> u32 {
-        self.size
+        self.raster.width()
     }
 
-    /// All 3 N² floats: red, green, blue of each pixel, rows from the bottom.
-    pub fn samples(&self) -> &[f32] {
-        &self.samples
-    }
-
-    /// The same floats, to be written.
+    /// All 3 N² floats, to be written: red, green, blue of each pixel, rows from the bottom.
     pub fn samples_mut(&mut self) -> &mut [f32] {
-        self.frame = 0;
-        &mut self.samples
+        self.samples_of_frame(0)
     }
 
     /// The number of the frame that a tracer left here.
@@ -103,26 +92,7 @@ impl Image {
     /// The samples, for a tracer that is to leave the frame of this number, and no other.
     pub(crate) fn samples_of_frame(&mut self, frame: u64) -> &mut [f32] {
         self.frame = frame;
-        &mut self.samples
-    }
-
-    /// Red, green and blue at `column` from the left and `row` from the bottom; `None` outside the
-    /// picture.
-    pub fn pixel(&self, column: u32, row: u32) -> Option<[f32; 3]> {
-        if column >= self.size || row >= self.size {
-            return None;
-        }
-        let first = (row as usize * self.size as usize + column as usize) * 3;
-        Some([
-            self.samples[first],
-            self.samples[first + 1],
-            self.samples[first + 2],
-        ])
-    }
-
-    /// The rows from the top of the picture to the bottom, as files store them: 3 N floats each.
-    pub(crate) fn rows_from_top(&self) -> impl Iterator<Item = &[f32]> {
-        self.samples.chunks_exact(3 * self.size as usize).rev()
+        self.raster.samples_mut()
     }
 }
 
@@ -143,6 +113,6 @@ pub fn display_byte(sample: f32) -> u8 {
 
 impl fmt::Debug for Image {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Image({0} × {0})", self.size)
+        write!(f, "Image({0} × {0})", self.size())
     }
 }

@@ -40,7 +40,7 @@
 //! | [`camera`] | α: its frames, its sine and cosine |
 //! | [`tracer`] | first hit, shading, shadow, mirror, each formula once; the kernels |
 //! | [`Render`] | whatever makes pictures of scenes: the tracer, or yours |
-//! | [`image`] | N × N pixels of linear floats; PNG and EXR in and out, animated PNG out |
+//! | [`image`] | pixels of linear floats, N × N where they are traced; PNG and EXR in and out, animated PNG out |
 //! | [`difference`] | how far one picture is from another, in numbers and in false colours |
 //! | [`diagnosis`] | what is wrong with a picture: which decisions, and why perhaps |
 //! | [`memory`] | which memory may be refused, for a program's allocator |

@@ -93,7 +93,7 @@ impl Screen {
     /// current again whenever a method of the screen is called, and when the screen is dropped.
     pub unsafe fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
         if !(1..=MAX_SIZE).contains(&size) {
-            return Err(ImageError::Size(size).into());
+            return Err(ImageError::Size(size, size).into());
         }
         // SAFETY: the context is current, as the caller has promised.
         let max = unsafe { gl.get_parameter_i32(glow::MAX_TEXTURE_SIZE) }.unsigned_abs();

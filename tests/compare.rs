@@ -8,7 +8,7 @@ use std::process::Output;
 
 use firsthit::Image;
 use firsthit::difference::{Difference, error_color};
-use firsthit::image::display_byte;
+use firsthit::image::{Raster, display_byte};
 use tempfile::TempDir;
 
 use crate::helpers::{self, bits, printed, program, text};
@@ -50,7 +50,7 @@ fn picture(changes: &[(usize, f32)]) -> Image {
     image
 }
 
-fn saved(folder: &TempDir, name: &str, image: &Image) {
+fn saved(folder: &TempDir, name: &str, image: &Raster) {
     image.save(folder.path().join(name)).unwrap();
 }
 
@@ -241,11 +241,11 @@ fn a_png_is_bytes_over_255() {
         eight,
         &rgba,
     );
-    let rgb = Image::load(path("rgb.png")).unwrap();
+    let rgb = Raster::load(path("rgb.png")).unwrap();
     // Rows of a file go down, those of a picture up.
     assert_eq!(rgb.pixel(1, 3), Some([1.0 / 255.0; 3]));
     for name in ["grey.png", "wide.png", "rgba.png"] {
-        assert!(Image::load(path(name)).unwrap() == rgb, "{name}");
+        assert!(Raster::load(path(name)).unwrap() == rgb, "{name}");
     }
     let mut glass = rgba.clone();
     glass[3] = 254;
@@ -268,7 +268,7 @@ fn an_exr_comes_back_bit_for_bit() {
             *sample = f32::from_bits((i as u32).wrapping_mul(0x9e37_79b1));
         }
         saved(&folder, "a.exr", &image);
-        let read = Image::load(folder.path().join("a.exr")).unwrap();
+        let read = Raster::load(folder.path().join("a.exr")).unwrap();
         assert!(bits(&read) == bits(&image), "{size}");
     }
 }
@@ -308,7 +308,10 @@ fn what_cannot_be_compared_is_one_line() {
         ("text.png a.exr", "text.png: is not a whole png"),
         ("half.exr a.exr", "half.exr: is not a whole exr"),
         ("half.png a.exr", "half.png: is not a whole png"),
-        ("wide.png a.exr", "wide.png: is 4 × 2 pixels"),
+        (
+            "wide.png a.exr",
+            "wide.png and a.exr: 4 × 2 and 4 × 4 pixels cannot be compared",
+        ),
         (
             "a.exr a.exr -o none/heat.png",
             "none/heat.png: cannot be written",
@@ -371,6 +374,53 @@ fn the_false_colours_are_those_of_the_errors_above_a_scale() {
     }
     // Nothing else is left in the folder.
     assert_eq!(folder.path().read_dir().unwrap().count(), 3);
+}
+
+#[test]
+fn pictures_need_not_be_square() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut high = Raster::new(3, 5).unwrap();
+    saved(&folder, "a.exr", &high);
+    // Column 2, row 1 from the bottom.
+    high.samples_mut()[3 * (3 + 2)] = f32::from_bits(1 << 12);
+    saved(&folder, "b.exr", &high);
+    saved(&folder, "wide.exr", &Raster::new(5, 3).unwrap());
+    let text = compared(&folder, "a.exr b.exr -o heat.png --json c.json");
+    assert_eq!(line(&text, "pictures"), "a.exr and b.exr, 3 × 5 pixels");
+    assert_eq!(line(&text, "wrong samples"), "1 of 45 (2.222 %)");
+    let worst = line(&text, "worst pixel");
+    let place = "column 2, row 3 from the top, 1 from the bottom: ";
+    assert!(worst.starts_with(place), "{worst}");
+
+    let (bytes, width, height) = png(&folder.path().join("heat.png"));
+    let side = 512 / 5;
+    assert!(height > 5 * side && height < 6 * side, "{height}");
+    let margin = (width - 3 * side) / 2;
+    for (column, row_from_top) in (0..3).flat_map(|column| (0..5).map(move |row| (column, row))) {
+        let expected = match (column, row_from_top) {
+            (2, 3) => error_color(Some(1 << 12)),
+            _ => error_color(Some(0)),
+        };
+        for (x, y) in [(0, 0), (side - 1, side - 1)] {
+            let pixel = (row_from_top * side + y) * width + margin + column * side + x;
+            assert_eq!(bytes[3 * pixel..3 * pixel + 3], expected, "{pixel}");
+        }
+    }
+
+    let json = fs::read_to_string(folder.path().join("c.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    for (name, value) in [
+        ("/size", serde_json::Value::Null),
+        ("/width", serde_json::json!(3)),
+        ("/height", serde_json::json!(5)),
+        ("/pixels", serde_json::json!(15)),
+        ("/worst_pixel/row_from_top", serde_json::json!(3)),
+    ] {
+        assert_eq!(json.pointer(name), Some(&value), "{name} of {json}");
+    }
+    let said = failed(&folder, "a.exr wide.exr", 1);
+    let sizes = "a.exr and wide.exr: 3 × 5 and 5 × 3 pixels cannot be compared: give two";
+    assert!(said.contains(sizes), "{said}");
 }
 
 #[test]
@@ -438,6 +488,8 @@ fn programs_are_told_the_same_as_json() {
         ("/b/nans", serde_json::json!(1)),
         ("/b/other_layers", serde_json::json!([])),
         ("/size", serde_json::json!(4)),
+        ("/width", serde_json::json!(4)),
+        ("/height", serde_json::json!(4)),
         ("/samples", serde_json::json!(48)),
         ("/wrong", serde_json::json!(3)),
         (

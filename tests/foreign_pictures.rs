@@ -9,6 +9,7 @@ use exr::prelude::{
     IntegerBounds, Layer as Part, LayerAttributes, SmallVec, Vec2, WritableImage,
 };
 use firsthit::Image;
+use firsthit::image::Raster;
 use tempfile::TempDir;
 
 use crate::helpers::{self, printed, program};
@@ -208,7 +209,7 @@ fn what_is_not_opaque_is_refused_unless_its_alpha_is_to_be_ignored() {
     write_exr(&folder, "glass.exr", &[("", &layer)]);
     refused(&folder, "own.exr glass.exr");
 
-    let image = Image::load(folder.path().join("own.exr")).unwrap();
+    let image = Raster::load(folder.path().join("own.exr")).unwrap();
     image.save(folder.path().join("own.png")).unwrap();
     let path = folder.path().join("glass.png");
     let mut encoder = png::Encoder::new(fs::File::create(path).unwrap(), 2, 2);

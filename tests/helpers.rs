@@ -16,6 +16,7 @@ use std::sync::Mutex;
 use std::thread;
 
 use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
+use firsthit::image::Raster;
 use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
@@ -60,11 +61,11 @@ pub(crate) fn trace_with_decisions(
 }
 
 /// The samples' bits, which tell signed zeros and NaNs apart.
-pub(crate) fn bits(image: &Image) -> Vec<u32> {
+pub(crate) fn bits(image: &Raster) -> Vec<u32> {
     image.samples().iter().map(|s| s.to_bits()).collect()
 }
 
-/// The samples of an EXR file as bits, in the order of [`Image::samples`].
+/// The samples of an EXR file as bits, in the order of [`Raster::samples`].
 pub(crate) fn exr_bits(path: &Path) -> Vec<u32> {
     let file = read_all_flat_layers_from_file(path).unwrap();
     let [layer] = &file.layer_data[..] else {

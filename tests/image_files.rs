@@ -10,7 +10,7 @@ use exr::math::Vec2;
 use exr::meta::MetaData;
 use exr::prelude::{Blocks, Compression, LineOrder, f16};
 use firsthit::Image;
-use firsthit::image::{Animation, AnimationWriter, LoadError, display_byte};
+use firsthit::image::{Animation, AnimationWriter, LoadError, Raster, display_byte};
 
 use crate::helpers::{bits, exr_bits};
 
@@ -49,6 +49,33 @@ fn an_exr_keeps_every_bit() {
         assert!(exr_bits(&path) == bits(&image), "{size}");
         let meta = MetaData::read_from_file(&path, true).unwrap();
         assert_eq!(meta.headers[0].compression, Compression::ZIP16);
+    }
+}
+
+#[test]
+fn a_picture_need_not_be_square() {
+    let folder = tempfile::tempdir().unwrap();
+    for (width, height) in [(1, 33), (33, 1), (40, 17)] {
+        let mut image = Raster::new(width, height).unwrap();
+        for (i, sample) in image.samples_mut().iter_mut().enumerate() {
+            *sample = f32::from_bits((i as u32).wrapping_mul(0x9e37_79b1));
+        }
+        let path = folder.path().join("a.exr");
+        image.save(&path).unwrap();
+        assert!(exr_bits(&path) == bits(&image), "{width} × {height}");
+        assert!(bits(&Raster::load(&path).unwrap()) == bits(&image));
+        let path = folder.path().join("a.png");
+        image.save(&path).unwrap();
+        let read = Raster::load(&path).unwrap();
+        assert_eq!((read.width(), read.height()), (width, height));
+        let bytes = image.samples().iter().copied().map(display_byte);
+        let read = read.samples().iter().copied().map(display_byte);
+        assert!(read.eq(bytes), "{width} × {height}");
+    }
+    for (width, height) in [(0, 1), (1, 0), (16385, 1), (1, 16385)] {
+        let said = Raster::new(width, height).unwrap_err().to_string();
+        let size = format!("a picture of {width} × {height} pixels cannot be made");
+        assert!(said.starts_with(&size), "{said}");
     }
 }
 
@@ -137,7 +164,7 @@ fn half(column: usize, row_from_top: usize, channel: usize) -> f32 {
     [0.0, 0.25, -1.5, 60000.0, 5.0][(column / 6 + row_from_top / 4 + channel) % 5]
 }
 
-/// An EXR of 11 × 11 pixels as another program may write it.
+/// An EXR of 11 × 9 pixels as another program may write it.
 fn write_halves(path: &Path, compression: Compression, blocks: Blocks) {
     let encoding = Encoding {
         compression,
@@ -148,7 +175,7 @@ fn write_halves(path: &Path, compression: Compression, blocks: Blocks) {
         let half = |channel| f16::from_f32(half(column, row_from_top, channel));
         (half(0), half(1), half(2))
     });
-    Part::from_encoded_channels((11, 11), encoding, channels)
+    Part::from_encoded_channels((11, 9), encoding, channels)
         .write()
         .to_file(path)
         .unwrap();
@@ -163,16 +190,17 @@ fn the_compressions_whose_decoder_is_safe_are_read_and_no_other() {
     let path = folder.path().join("half.exr");
     for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24] {
         write_halves(&path, compression, Blocks::ScanLines);
-        let image = Image::load(&path).unwrap();
+        let image = Raster::load(&path).unwrap();
+        assert_eq!((image.width(), image.height()), (11, 9));
         for (i, sample) in image.samples().iter().enumerate() {
             let (column, row) = (i / 3 % 11, i / 3 / 11);
-            let expected = half(column, 10 - row, i % 3);
+            let expected = half(column, 8 - row, i % 3);
             assert_eq!(sample.to_bits(), expected.to_bits(), "{compression} {i}");
         }
     }
     for compression in [B44, B44A, DWAA(None), DWAB(None)] {
         write_halves(&path, compression, Blocks::ScanLines);
-        let said = Image::load(&path).unwrap_err().to_string();
+        let said = Raster::load(&path).unwrap_err().to_string();
         let expected =
             format!("half.exr: {compression} is not read: convert it to zip compression");
         assert!(said.ends_with(&expected), "{said}");
@@ -195,7 +223,7 @@ fn no_decoder_sees_a_block_that_it_would_break_at() {
         // Behind its first row and its length.
         craft(&mut file[table + 16..]);
         fs::write(&path, file).unwrap();
-        let refused = Image::load(&path);
+        let refused = Raster::load(&path);
         assert!(
             matches!(refused, Err(LoadError::Compression { .. })),
             "{refused:?}"
@@ -220,7 +248,7 @@ fn what_takes_too_much_memory_is_refused_first() {
         let numbers: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
         file[place..place + numbers.len()].copy_from_slice(&numbers);
         fs::write(&path, file).unwrap();
-        Image::load(&path).unwrap_err().to_string()
+        Raster::load(&path).unwrap_err().to_string()
     };
     let window = b"dataWindow\0box2i\0\x10\0\0\0";
     let wide = load(Blocks::ScanLines, window, &[-(1 << 29), 0, 10, 10]);
@@ -242,7 +270,7 @@ fn a_palette_is_one_of_whole_colours() {
         let mut writer = encoder.write_header().unwrap();
         writer.write_image_data(&[1]).unwrap();
         writer.finish().unwrap();
-        Image::load(&path)
+        Raster::load(&path)
     };
     let image = load(&[0, 0, 0, 255, 0, 51]).unwrap();
     assert_eq!(image.samples(), [1.0, 0.0, 0.2]);

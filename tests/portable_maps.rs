@@ -4,14 +4,14 @@
 use std::fs;
 
 use firsthit::Image;
-use firsthit::image::LoadOptions;
+use firsthit::image::{LoadOptions, Raster};
 
 /// What the bytes are read as, as a file whose name ends in that.
-fn load(bytes: &[u8], extension: &str) -> Result<Image, String> {
+fn load(bytes: &[u8], extension: &str) -> Result<Raster, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(format!("a.{extension}"));
     fs::write(&path, bytes).unwrap();
-    let said = Image::load(&path).map_err(|error| error.to_string());
+    let said = Raster::load(&path).map_err(|error| error.to_string());
     if let Err(said) = &said {
         assert!(!said.contains(['\n', '\r']), "{said:?}");
     }
@@ -19,7 +19,7 @@ fn load(bytes: &[u8], extension: &str) -> Result<Image, String> {
 }
 
 /// The same, with what comes after the header.
-fn load_with_data(header: &str, data: &[u8], extension: &str) -> Result<Image, String> {
+fn load_with_data(header: &str, data: &[u8], extension: &str) -> Result<Raster, String> {
     load(&[header.as_bytes(), data].concat(), extension)
 }
 
@@ -93,6 +93,36 @@ fn a_pfm_is_read_bit_for_bit() {
 }
 
 #[test]
+fn rows_are_as_long_as_the_picture_is_wide() {
+    let numbers = [
+        0, 1, 2, 3, 4, 5, 60, 70, 80, 253, 254, 255, 7, 8, 9, 10, 11, 12,
+    ];
+    let samples = numbers.map(|number| f32::from(number) / 255.0);
+    for (width, height) in [(3, 2), (2, 3), (6, 1), (1, 6)] {
+        let row = 3 * width as usize;
+        let from_top: Vec<f32> = samples.chunks(row).rev().flatten().copied().collect();
+        let header = format!("P6 {width} {height} 255 ");
+        let text = numbers.map(|number| number.to_string()).join(" ");
+        let bytes: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();
+        for (read, expected) in [
+            (load_with_data(&header, &numbers, "ppm"), &from_top[..]),
+            (
+                load_with_data(&header.replace("P6", "P3"), text.as_bytes(), "ppm"),
+                &from_top,
+            ),
+            (
+                load_with_data(&format!("PF {width} {height} -1 "), &bytes, "pfm"),
+                &samples,
+            ),
+        ] {
+            let read = read.unwrap();
+            assert_eq!((read.width(), read.height()), (width, height));
+            assert_eq!(read.samples(), expected, "{width} × {height}");
+        }
+    }
+}
+
+#[test]
 fn what_stands_for_one_is_known_of_whole_numbers_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
@@ -100,7 +130,7 @@ fn what_stands_for_one_is_known_of_whole_numbers_alone() {
     fs::write(path("a.pfm"), "Pf 1 1 1 0000").unwrap();
     Image::new(1).unwrap().save(path("a.png")).unwrap();
     for (name, largest) in [("a.ppm", Some(7)), ("a.pfm", None), ("a.png", Some(255))] {
-        let loaded = Image::load_with(path(name), &LoadOptions::default()).unwrap();
+        let loaded = Raster::load_with(path(name), &LoadOptions::default()).unwrap();
         assert_eq!(loaded.largest, largest, "{name}");
         assert_eq!((loaded.corner, &*loaded.layer), ([0, 0], ""), "{name}");
     }
@@ -139,9 +169,21 @@ fn what_is_not_whole_is_refused_in_one_line() {
         ("P6 1 1 255 abcd", "it goes on after its last pixel"),
         // The second character of the line break was the first byte of the picture.
         ("P6 1 1 255\r\nabc", "it goes on after its last pixel"),
-        ("P3 0 0 255 ", "choose a size from 1 to 16384"),
-        ("P3 16385 16385 255 ", "choose a size from 1 to 16384"),
-        ("P3 2 1 255 0 0 0 0 0 0", "is 2 × 1 pixels"),
+        (
+            "P3 0 0 255 ",
+            "is 0 × 0 pixels: give a picture of 1 to 16384 pixels a side",
+        ),
+        (
+            "P3 16385 16385 255 ",
+            "is 16385 × 16385 pixels: give a picture of 1",
+        ),
+        ("P3 2 0 255 ", "is 2 × 0 pixels: give a picture of 1"),
+        (
+            "P3 1 16385 255 ",
+            "is 1 × 16385 pixels: give a picture of 1",
+        ),
+        ("P3 2 1 255 0 0 0 0 0", "it ends before a sample"),
+        ("P6 1 2 255 abcdefg", "it goes on after its last pixel"),
         ("P6 16384 16384 255 a", "it ends before its last pixel"),
     ] {
         let said = load(bytes.as_bytes(), "ppm").unwrap_err();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use firsthit::difference::{Difference, PixelDifference, save_heat};
-use firsthit::image::{Format, Image, LoadError, LoadOptions, LoadedImage};
+use firsthit::image::{Format, LoadError, LoadOptions, LoadedImage, Raster};
 use firsthit::report;
 
 use super::arguments::finite;
@@ -152,7 +152,7 @@ impl Arguments {
                 a: self.a.clone(),
                 b: self.b.clone(),
                 corners: [a.corner, b.corner],
-                size: a.image.size(),
+                size: [a.image.width(), a.image.height()],
             });
         }
         Ok(Compared {
@@ -203,5 +203,5 @@ fn is_same(a: &Path, b: &Path) -> bool {
 
 fn load(path: &Path, options: &LoadOptions) -> Result<LoadedImage, LoadError> {
     let _watchdog = Watchdog::for_input(path);
-    Image::load_with(path, options)
+    Raster::load_with(path, options)
 }

@@ -6,16 +6,15 @@ use std::path::Path;
 use glam::IVec2;
 
 use super::scale::{OCTAVES, color_at};
-use super::{SizesDiffer, error_color, worst};
-use crate::Image;
+use super::{SizesDiffer, check_sizes, error_color, worst};
 use crate::image::whole_file::{Output, WholeFile};
-use crate::image::{SaveError, png};
+use crate::image::{Raster, SaveError, png};
 use crate::text::Font;
 
 /// The narrowest picture that the scale fits under.
 const MIN_WIDTH: usize = 560;
 
-/// Small pictures are magnified up to about this many pixels along a side.
+/// Small pictures are magnified up to about this many pixels along their longer side.
 const MAGNIFIED: usize = 512;
 
 /// The width of a character, in pixels.
@@ -25,15 +24,13 @@ const PAPER: [u8; 3] = [255, 255, 255];
 
 /// A picture that shows how far `image` is from `truth`, each pixel coloured by [`error_color`] of
 /// its worst sample, above a scale with numbers; as a PNG, whatever the extension of `path`.
-/// Pictures of less than 257 pixels along a side are magnified by whole numbers. The file
-/// appears whole or not at all.
+/// Pictures of less than 257 pixels along their longer side are magnified by whole numbers. The
+/// file appears whole or not at all.
 ///
 /// # Errors
 /// [`HeatError`] unless both have one size, and where the file cannot be written.
-pub fn save_heat(image: &Image, truth: &Image, path: impl AsRef<Path>) -> Result<(), HeatError> {
-    if image.size() != truth.size() {
-        return Err(SizesDiffer(image.size(), truth.size()).into());
-    }
+pub fn save_heat(image: &Raster, truth: &Raster, path: impl AsRef<Path>) -> Result<(), HeatError> {
+    check_sizes(image, truth)?;
     WholeFile::write(path.as_ref(), |output| write(image, truth, output))?;
     Ok(())
 }
@@ -50,15 +47,16 @@ pub enum HeatError {
     Save(#[from] SaveError),
 }
 
-fn write(image: &Image, truth: &Image, output: &mut Output) -> io::Result<()> {
-    let size = image.size() as usize;
-    let magnification = (MAGNIFIED / size).max(1);
-    let width = (size * magnification).max(MIN_WIDTH);
+fn write(image: &Raster, truth: &Raster, output: &mut Output) -> io::Result<()> {
+    let size = [image.width(), image.height()].map(|side| side as usize);
+    let magnification = (MAGNIFIED / size[0].max(size[1])).max(1);
+    let [magnified_width, magnified_height] = size.map(|side| side * magnification);
+    let width = magnified_width.max(MIN_WIDTH);
     let legend = legend(width);
-    let height = size * magnification + legend.rows();
+    let height = magnified_height + legend.rows();
     let mut writer = png::encoder(output, width as u32, height as u32).write_header()?;
     let mut stream = writer.stream_writer_with_size(png::CHUNK)?;
-    let margin = (width - size * magnification) / 2;
+    let margin = (width - magnified_width) / 2;
     let rows = image.rows_from_top().zip(truth.rows_from_top());
     for (row, true_row) in rows {
         let mut line = Strip::new(width, 1);

@@ -1,8 +1,7 @@
 //! The difference of two pictures by pixels: how many are how far off, and which one is worst.
 
-use super::{SizesDiffer, worst};
-use crate::Image;
-use crate::image::display_byte;
+use super::{SizesDiffer, check_sizes, worst};
+use crate::image::{Raster, display_byte};
 
 /// How far the pixels of one picture are from those of another, each judged by its worst sample. A
 /// NaN against a number is further off than any number.
@@ -53,17 +52,16 @@ impl PixelDifference {
     ///
     /// # Errors
     /// [`SizesDiffer`] unless both have one size.
-    pub fn of(image: &Image, truth: &Image) -> Result<PixelDifference, SizesDiffer> {
-        if image.size() != truth.size() {
-            return Err(SizesDiffer(image.size(), truth.size()));
-        }
+    pub fn of(image: &Raster, truth: &Raster) -> Result<PixelDifference, SizesDiffer> {
+        check_sizes(image, truth)?;
         let mut difference = PixelDifference {
-            pixels: u64::from(image.size()).pow(2),
+            pixels: u64::from(image.width()) * u64::from(image.height()),
             beyond_steps: [0; 33],
             beyond_bytes: [0; 9],
             worst: None,
         };
-        let pixels = (0..image.size()).flat_map(|row| (0..image.size()).map(move |at| (at, row)));
+        let pixels =
+            (0..image.height()).flat_map(|row| (0..image.width()).map(move |at| (at, row)));
         let (colors, _) = image.samples().as_chunks::<3>();
         let (true_colors, _) = truth.samples().as_chunks::<3>();
         for ((&color, &truth), (column, row)) in colors.iter().zip(true_colors).zip(pixels) {

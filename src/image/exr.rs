@@ -7,7 +7,7 @@ use ::exr::image::write::WritableImage;
 use ::exr::image::{Encoding, Image as Part, SpecificChannels};
 use ::exr::math::Vec2;
 
-use super::Image;
+use super::Raster;
 
 /// Where an EXR can be written: its table of blocks, at the beginning, is written last.
 pub(super) trait WriteSeek: Write + Seek {}
@@ -16,14 +16,14 @@ impl<T: Write + Seek> WriteSeek for T {}
 
 /// One part of scan lines with the channels B, G and R, in blocks of 16 rows compressed by zlib,
 /// rows in order. The encoder is compiled once, for whatever it writes to.
-pub(super) fn write(image: &Image, output: &mut dyn WriteSeek) -> io::Result<()> {
-    let size = image.size() as usize;
+pub(super) fn write(image: &Raster, output: &mut dyn WriteSeek) -> io::Result<()> {
+    let (width, height) = (image.width() as usize, image.height() as usize);
     let samples = image.samples();
     let channels = SpecificChannels::rgb(|Vec2(column, row_from_top): Vec2<usize>| {
-        let first = ((size - 1 - row_from_top) * size + column) * 3;
+        let first = ((height - 1 - row_from_top) * width + column) * 3;
         (samples[first], samples[first + 1], samples[first + 2])
     });
-    Part::from_encoded_channels((size, size), Encoding::SMALL_LOSSLESS, channels)
+    Part::from_encoded_channels((width, height), Encoding::SMALL_LOSSLESS, channels)
         .write()
         .to_buffered(output)
         .map_err(|error| match error {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use ::exr::compression::Compression;
 
-use super::{Image, ImageError, MAX_SIZE};
+use super::{ImageError, MAX_SIZE, Raster};
 pub use format::InputFormat;
 
 /// A file that no picture can be read from. Each message is one line.
@@ -70,9 +70,9 @@ pub enum LoadError {
         /// Which one it is.
         compression: String,
     },
-    /// It is not as wide as high.
-    #[error("{}: is {width} × {height} pixels: give a picture that is as wide as high", path.display())]
-    NotSquare {
+    /// Its width or its height is not from 1 to [`MAX_SIZE`].
+    #[error("{}: is {width} × {height} pixels: give a picture of 1 to {MAX_SIZE} pixels a side", path.display())]
+    Size {
         /// The file.
         path: PathBuf,
         /// Its pixels in a row.
@@ -84,7 +84,7 @@ pub enum LoadError {
     /// alpha is not 1, or the largest whole number.
     #[error("{}: some pixels are transparent: give an opaque picture, or ignore its alpha (--ignore-alpha)", .0.display())]
     Transparent(PathBuf),
-    /// It is larger than any picture here, or than the memory.
+    /// There is not enough memory for it.
     #[error("{}: {reason}", path.display())]
     Image {
         /// The file.
@@ -110,7 +110,7 @@ pub struct LoadOptions {
 #[derive(Debug)]
 pub struct LoadedImage {
     /// The picture.
-    pub image: Image,
+    pub image: Raster,
     /// Where an EXR's data window begins: the column from the left and the row from the top of its
     /// upper left pixel, in the coordinates that all windows of EXRs have. `[0, 0]` in a file that
     /// has no windows.
@@ -125,7 +125,7 @@ pub struct LoadedImage {
 
 impl LoadedImage {
     /// A picture of fractions of `largest`, all that its file holds.
-    fn of_whole_numbers(image: Image, largest: u16) -> LoadedImage {
+    fn of_whole_numbers(image: Raster, largest: u16) -> LoadedImage {
         LoadedImage {
             largest: Some(largest),
             ..LoadedImage::of_floats(image)
@@ -133,7 +133,7 @@ impl LoadedImage {
     }
 
     /// A picture of floats, all that its file holds.
-    fn of_floats(image: Image) -> LoadedImage {
+    fn of_floats(image: Raster) -> LoadedImage {
         LoadedImage {
             image,
             corner: [0, 0],
@@ -144,13 +144,13 @@ impl LoadedImage {
     }
 }
 
-impl Image {
-    /// Reads `path` as [`Image::load_with`] does, with no choice made.
+impl Raster {
+    /// Reads `path` as [`Raster::load_with`] does, with no choice made.
     ///
     /// # Errors
-    /// As [`Image::load_with`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Image, LoadError> {
-        Image::load_with(path, &LoadOptions::default()).map(|loaded| loaded.image)
+    /// As [`Raster::load_with`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Raster, LoadError> {
+        Raster::load_with(path, &LoadOptions::default()).map(|loaded| loaded.image)
     }
 
     /// Reads `path`: red, green and blue of an `.exr`, every 32-bit float bit for bit, from
@@ -161,8 +161,8 @@ impl Image {
     ///
     /// # Errors
     /// [`LoadError`] where the extension is none of these, or the file is not a whole picture
-    /// that is as wide as high and, unless its alpha is to be ignored, opaque, or it is an EXR
-    /// compressed by B44 or DWA, or an EXR without that layer.
+    /// of 1 to [`MAX_SIZE`] pixels a side and, unless its alpha is to be ignored, opaque, or it is
+    /// an EXR compressed by B44 or DWA, or an EXR without that layer.
     pub fn load_with(
         path: impl AsRef<Path>,
         options: &LoadOptions,
@@ -200,7 +200,7 @@ impl Image {
                 layer,
                 layers,
             },
-            Problem::NotSquare(width, height) => LoadError::NotSquare {
+            Problem::Size(width, height) => LoadError::Size {
                 path: path.to_owned(),
                 width,
                 height,
@@ -223,23 +223,22 @@ enum Problem {
     NoColor(String),
     /// What was asked for, and what there is.
     NoLayer(String, String),
-    NotSquare(usize, usize),
+    Size(usize, usize),
     Transparent,
     Image(ImageError),
 }
 
-/// N of the size that a file says it has: checked before anything of that size is allocated.
-fn side(width: usize, height: usize) -> Result<u32, Problem> {
-    if width != height {
-        return Err(Problem::NotSquare(width, height));
-    }
-    match u32::try_from(width).unwrap_or(u32::MAX) {
-        side @ 1..=MAX_SIZE => Ok(side),
-        other => Err(Problem::Image(ImageError::Size(other))),
+/// The width and the height that a file says it has: checked before anything of that size is
+/// allocated.
+fn checked_size(width: usize, height: usize) -> Result<[u32; 2], Problem> {
+    match [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX)) {
+        size @ [1..=MAX_SIZE, 1..=MAX_SIZE] => Ok(size),
+        _ => Err(Problem::Size(width, height)),
     }
 }
 
 /// A black picture of that size.
-fn square(width: usize, height: usize) -> Result<Image, Problem> {
-    Image::new(side(width, height)?).map_err(Problem::Image)
+fn black(width: usize, height: usize) -> Result<Raster, Problem> {
+    let [width, height] = checked_size(width, height)?;
+    Raster::new(width, height).map_err(Problem::Image)
 }

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
 
-use super::Image;
+use super::Raster;
 
 /// Bytes in an IDAT chunk: large enough that the 12 around each do not count.
 pub(crate) const CHUNK: usize = 1 << 16;
@@ -21,8 +21,8 @@ pub(crate) fn encoder<W: Write>(output: W, width: u32, height: u32) -> Encoder<'
 }
 
 /// Writes the picture row by row: a second copy of a large one would not fit beside it.
-pub(super) fn write(image: &Image, output: &mut dyn Write) -> io::Result<()> {
-    let mut writer = encoder(output, image.size(), image.size()).write_header()?;
+pub(super) fn write(image: &Raster, output: &mut dyn Write) -> io::Result<()> {
+    let mut writer = encoder(output, image.width(), image.height()).write_header()?;
     let mut stream = writer.stream_writer_with_size(CHUNK)?;
     image.write_rgb24(&mut stream)?;
     stream.finish()?;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::whole_file::WholeFile;
-use super::{Format, Image, SaveError, exr, png};
+use super::{Format, Raster, SaveError, exr, png};
 
-impl Image {
+impl Raster {
     /// Writes the picture to `path`: `.png` as [`display_byte`](super::display_byte) shows it,
     /// `.exr` bit for bit. The bytes of the file depend on nothing but the picture.
     ///

@@ -2,10 +2,10 @@
 
 use std::io::{self, BufWriter, Seek as _, Write};
 
-use super::{Image, display_byte, exr, png};
+use super::{Raster, display_byte, exr, png};
 
-impl Image {
-    /// Writes the bytes of the `.png` that [`Image::save`] makes.
+impl Raster {
+    /// Writes the bytes of the `.png` that [`Raster::save`] makes.
     ///
     /// # Errors
     /// Those of `output`.
@@ -13,7 +13,7 @@ impl Image {
         png::write(self, output)
     }
 
-    /// Writes the bytes of the `.exr` that [`Image::save`] makes. An EXR begins with a table of
+    /// Writes the bytes of the `.exr` that [`Raster::save`] makes. An EXR begins with a table of
     /// what follows, so that it is made in a temporary file without a name and then copied.
     ///
     /// # Errors
@@ -29,7 +29,7 @@ impl Image {
         Ok(())
     }
 
-    /// Writes 3 N² bytes and nothing else: red, green and blue of each pixel as [`display_byte`]
+    /// Writes a byte a sample and nothing else: red, green and blue of each pixel as [`display_byte`]
     /// shows them, rows from the **top**, a row from left to right.
     ///
     /// ```

@@ -483,7 +483,10 @@ mod tests {
                         texture[rows.clone()].copy_from_slice(&image.samples()[rows]);
                         content.uploaded();
                     }
-                    let expected = errors.as_ref().or(picture.as_ref()).map(Image::samples);
+                    let expected = errors
+                        .as_ref()
+                        .or(picture.as_ref())
+                        .map(|image| image.samples());
                     if content.redisplay(false, false, false) == Redisplay::Draw {
                         assert_eq!(Some(&texture[..]), expected);
                         drawn += 1;

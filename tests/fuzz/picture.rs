@@ -2,12 +2,13 @@
 
 use std::fs;
 
-use firsthit::Image;
+use firsthit::image::{MAX_SIZE, Raster};
 
-/// Whether a picture of this size takes more memory than is allowed here. What is not square is
-/// refused before it takes any.
+/// Whether a picture of this size takes more memory than is allowed here. One that is wider or
+/// higher than any picture is refused before it takes any.
 pub(crate) fn is_large(width: i64, height: i64) -> bool {
-    width == height && width > 512
+    let can_be_read = |side| (1..=i64::from(MAX_SIZE)).contains(&side);
+    can_be_read(width) && can_be_read(height) && width * height > 512 * 512
 }
 
 /// A file of these bytes, whose name ends in that, is a picture that can be written as EXR and read
@@ -16,11 +17,11 @@ pub(crate) fn check(bytes: &[u8], extension: &str) {
     let file = |extension| tempfile::Builder::new().suffix(extension).tempfile();
     let path = file(extension).unwrap().into_temp_path();
     fs::write(&path, bytes).unwrap();
-    match Image::load(&path) {
-        Ok(image) if image.size() <= 32 => {
+    match Raster::load(&path) {
+        Ok(image) if image.width().max(image.height()) <= 32 => {
             let copy = file(".exr").unwrap().into_temp_path();
             image.save(&copy).unwrap();
-            assert!(bits(&Image::load(&copy).unwrap()) == bits(&image));
+            assert!(bits(&Raster::load(&copy).unwrap()) == bits(&image));
         }
         Ok(_) => {}
         Err(error) => {
@@ -30,6 +31,6 @@ pub(crate) fn check(bytes: &[u8], extension: &str) {
     }
 }
 
-fn bits(image: &Image) -> Vec<u32> {
+fn bits(image: &Raster) -> Vec<u32> {
     image.samples().iter().map(|s| s.to_bits()).collect()
 }

@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use firsthit::Image;
+use firsthit::image::Raster;
 use firsthit::image::{Animation, Format};
 
 use super::super::streams::{StandardOutput, is_standard};
@@ -32,7 +32,7 @@ pub(super) enum StreamFormat {
 const FPS: NonZeroU16 = NonZeroU16::new(5).unwrap();
 
 /// Writes a picture into standard output.
-pub(super) type WritePicture = fn(&Image, &mut StandardOutput) -> io::Result<()>;
+pub(super) type WritePicture = fn(&Raster, &mut StandardOutput) -> io::Result<()>;
 
 /// What is to be written.
 pub(super) enum Job {
@@ -165,9 +165,9 @@ impl Stream {
                     "-o -: standard output holds one png or exr: choose --format apng or rgb24, or write files, as in -o frame-{}.png",
                 ));
             }
-            (StreamFormat::Png, None) => Image::write_png,
-            (StreamFormat::Exr, None) => Image::write_exr,
-            (StreamFormat::Rgb24, None) => Image::write_rgb24,
+            (StreamFormat::Png, None) => Raster::write_png,
+            (StreamFormat::Exr, None) => Raster::write_exr,
+            (StreamFormat::Rgb24, None) => Raster::write_rgb24,
         };
         let alpha = arguments.angle.alpha();
         Ok(Stream::Picture { alpha, write })

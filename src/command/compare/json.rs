@@ -11,7 +11,10 @@ struct Json {
     version: u32,
     a: JsonPicture,
     b: JsonPicture,
-    size: u32,
+    /// Of a square picture; `null` of another.
+    size: Option<u32>,
+    width: u32,
+    height: u32,
     samples: u64,
     wrong: u64,
     max_ulp: u32,
@@ -59,7 +62,8 @@ struct JsonPixel {
 /// One object, and a line break.
 pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bool) -> String {
     let (samples, pixels) = (&compared.samples, &compared.pixels);
-    let size = compared.pictures[0].image.size();
+    let image = &compared.pictures[0].image;
+    let (width, height) = (image.width(), image.height());
     let picture = |place: usize| JsonPicture {
         path: arguments.paths()[place].display().to_string(),
         layer: compared.pictures[place].layer.clone(),
@@ -76,7 +80,7 @@ pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bo
     };
     let pixel = |pixel: WorstPixel| JsonPixel {
         column: pixel.column,
-        row_from_top: size - 1 - pixel.row,
+        row_from_top: height - 1 - pixel.row,
         row_from_bottom: pixel.row,
         a: pixel.colors[0],
         b: pixel.colors[1],
@@ -86,7 +90,9 @@ pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bo
         version: 1,
         a: picture(0),
         b: picture(1),
-        size,
+        size: (width == height).then_some(width),
+        width,
+        height,
         samples: samples.samples,
         wrong: samples.wrong,
         max_ulp: samples.max_steps,

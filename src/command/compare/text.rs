@@ -27,9 +27,10 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
         worst,
     } = &compared.pixels;
     let [a, b] = arguments.paths().map(|path| path.display());
-    let size = compared.pictures[0].image.size();
+    let image = &compared.pictures[0].image;
+    let (width, height) = (image.width(), image.height());
     let mut text = format!(
-        "pictures           {a} and {b}, {size} × {size} pixels\n\
+        "pictures           {a} and {b}, {width} × {height} pixels\n\
          wrong samples      {wrong} of {samples} ({:.3} %)\n\
          error in f32 steps {max_steps} at most, {:.4} in the mean\n\
          absolute error     {max_abs:.4e} at most, {:.4e} in the mean\n\
@@ -49,7 +50,7 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
         },
         worst.map_or_else(
             || "none: no number differs from another".to_owned(),
-            |worst| pixel(worst, size)
+            |worst| pixel(worst, height)
         ),
         beyond(beyond_steps),
         beyond(beyond_bytes),
@@ -63,14 +64,14 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
     text
 }
 
-fn pixel(pixel: WorstPixel, size: u32) -> String {
+fn pixel(pixel: WorstPixel, height: u32) -> String {
     let WorstPixel {
         column,
         row,
         colors: [a, b],
         steps,
     } = pixel;
-    let from_top = size - 1 - row;
+    let from_top = height - 1 - row;
     let steps = steps.map_or_else(
         || "a NaN against a number".to_owned(),
         |steps| format!("{steps} f32 steps"),

@@ -14,8 +14,8 @@ use ::exr::meta::header::Header;
 use ::exr::prelude::f16;
 
 use super::layers::{self, Layer, Role};
-use super::{LoadOptions, LoadedImage, Problem, side, square};
-use crate::image::{Image, MAX_SIZE};
+use super::{LoadOptions, LoadedImage, Problem, black, checked_size};
+use crate::image::{MAX_SIZE, Raster};
 
 impl From<Error> for Problem {
     fn from(error: Error) -> Problem {
@@ -40,7 +40,7 @@ const MAX_BLOCK: u64 = 16 * (MAX_SIZE as u64).pow(2);
 /// Refuses the part of a file that would be read, where the decoder could not refuse it by itself
 /// or only after it has decoded all of it.
 fn check_part(part: &Header) -> Result<(), Problem> {
-    side(part.layer_size.width(), part.layer_size.height())?;
+    checked_size(part.layer_size.width(), part.layer_size.height())?;
     if !is_safe(part.compression) {
         return Err(Problem::Compression(part.compression));
     }
@@ -64,7 +64,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     let header = &file.headers()[layer.part];
     check_part(header)?;
     let Vec2(left, top) = header.own_attributes.layer_position;
-    let mut image = square(header.layer_size.width(), header.layer_size.height())?;
+    let mut image = black(header.layer_size.width(), header.layer_size.height())?;
     let chunks = file.filter_chunks(false, |_, tile, block| {
         block.layer == layer.part && tile.is_largest_resolution_level()
     })?;
@@ -100,9 +100,9 @@ fn wrong_block() -> Problem {
 
 /// Copies the layer's colours of a block to where they are in the picture; whether all of them are
 /// opaque.
-fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut Image) -> bool {
+fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut Raster) -> bool {
     let mut opaque = true;
-    let size = image.size() as usize;
+    let (width, height) = (image.width() as usize, image.height() as usize);
     for line in block.lines(&header.channels) {
         let Some(role) = layer.role(line.location.channel) else {
             continue;
@@ -113,7 +113,7 @@ fn copy(block: &UncompressedBlock, header: &Header, layer: &Layer, image: &mut I
             Role::Alpha => opaque &= samples.all(|alpha| alpha == 1.0),
             Role::Color(color) => {
                 let Vec2(first, row_from_top) = line.location.position;
-                let start = (size - 1 - row_from_top) * size + first;
+                let start = (height - 1 - row_from_top) * width + first;
                 let pixels = image.samples_mut()[3 * start..].chunks_exact_mut(3);
                 for (pixel, sample) in pixels.zip(samples) {
                     pixel[color] = sample;

@@ -5,7 +5,7 @@ use std::io::{self, BufReader};
 
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
-use super::{LoadOptions, LoadedImage, Problem, square};
+use super::{LoadOptions, LoadedImage, Problem, black};
 use crate::image::ImageError;
 use crate::memory;
 
@@ -25,7 +25,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;
     let (width, height) = reader.info().size();
-    let mut image = square(width as usize, height as usize)?;
+    let mut image = black(width as usize, height as usize)?;
     // The decoder takes a palette apart by threes, and would panic at what is left.
     let palette = reader.info().palette.as_deref().unwrap_or_default();
     if !palette.len().is_multiple_of(3) {
@@ -35,7 +35,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
         );
         return Err(Problem::Damaged(reason));
     }
-    let too_large = || Problem::Image(ImageError::Memory(width));
+    let too_large = || Problem::Image(ImageError::Memory(width, height));
     let mut bytes = Vec::new();
     let length = reader.output_buffer_size().ok_or_else(too_large)?;
     memory::reserve(&mut bytes, length).map_err(|_| too_large())?;
@@ -46,11 +46,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     let wide = info.bit_depth == ::png::BitDepth::Sixteen;
     let channels = info.color_type.samples();
     let rows = bytes.chunks_exact(info.line_size);
-    let rows_from_top = image
-        .samples_mut()
-        .chunks_exact_mut(3 * width as usize)
-        .rev();
-    for (row, samples) in rows.zip(rows_from_top) {
+    for (row, samples) in rows.zip(image.rows_from_top_mut()) {
         let pixels = row.chunks_exact(channels * if wide { 2 } else { 1 });
         for (pixel, sample) in pixels.zip(samples.chunks_exact_mut(3)) {
             let value = |channel: usize| match wide {

@@ -1,7 +1,7 @@
 //! The samples of a picture, one after the other.
 
-use super::{Problem, side};
-use crate::image::{Image, ImageError};
+use super::{Problem, checked_size};
+use crate::image::{ImageError, Raster};
 use crate::memory;
 
 /// How many samples there is room for at first.
@@ -10,22 +10,25 @@ const FIRST: usize = 1 << 16;
 /// Samples in the order of a file. They take memory as they come: what a file says of its size may
 /// be wrong.
 pub(super) struct Samples {
-    size: u32,
+    width: u32,
+    height: u32,
     samples: Vec<f32>,
 }
 
 impl Samples {
     /// None yet, of a picture of this size.
     pub(super) fn new(width: usize, height: usize) -> Result<Samples, Problem> {
+        let [width, height] = checked_size(width, height)?;
         Ok(Samples {
-            size: side(width, height)?,
+            width,
+            height,
             samples: Vec::new(),
         })
     }
 
     /// How many pixels the picture has.
     pub(super) fn pixels(&self) -> usize {
-        (self.size as usize).pow(2)
+        self.width as usize * self.height as usize
     }
 
     /// Adds a pixel.
@@ -40,24 +43,23 @@ impl Samples {
     }
 
     /// The picture, whose rows came from the bottom.
-    pub(super) fn image_from_bottom(self) -> Result<Image, Problem> {
-        let mut image = Image::new(self.size).map_err(Problem::Image)?;
+    pub(super) fn image_from_bottom(self) -> Result<Raster, Problem> {
+        let mut image = Raster::new(self.width, self.height).map_err(Problem::Image)?;
         image.samples_mut().copy_from_slice(&self.samples);
         Ok(image)
     }
 
     /// The picture, whose rows came from the top.
-    pub(super) fn image_from_top(self) -> Result<Image, Problem> {
-        let mut image = Image::new(self.size).map_err(Problem::Image)?;
-        let row = 3 * self.size as usize;
-        let rows = image.samples_mut().chunks_exact_mut(row).rev();
-        for (to, from) in rows.zip(self.samples.chunks_exact(row)) {
+    pub(super) fn image_from_top(self) -> Result<Raster, Problem> {
+        let mut image = Raster::new(self.width, self.height).map_err(Problem::Image)?;
+        let rows = self.samples.chunks_exact(3 * self.width as usize);
+        for (to, from) in image.rows_from_top_mut().zip(rows) {
             to.copy_from_slice(from);
         }
         Ok(image)
     }
 
     fn too_large(&self) -> Problem {
-        Problem::Image(ImageError::Memory(self.size))
+        Problem::Image(ImageError::Memory(self.width, self.height))
     }
 }
