@@ -20,7 +20,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use firsthit::diagnosis::ExaminationError;
 use firsthit::difference::{HeatError, SizesDiffer};
-use firsthit::image::{ImageError, LoadError, SaveError};
+use firsthit::image::{ImageError, LoadError, SaveError, Window};
 use firsthit::program::ProgramError;
 use firsthit::report::{PlotError, ReportError};
 use firsthit::scene::{BUILTIN_TOML, SceneFileError};
@@ -97,14 +97,12 @@ pub(crate) enum Failure {
     },
     #[error(
         "{} and {}: show pixels {} and {} of a scene, by their data windows: render both with one window",
-        a.display(), b.display(), window(corners[0], *size), window(corners[1], *size)
+        a.display(), b.display(), windows[0], windows[1]
     )]
     Windows {
         a: PathBuf,
         b: PathBuf,
-        /// Those of [`firsthit::image::LoadedImage`].
-        corners: [[i32; 2]; 2],
-        size: [u32; 2],
+        windows: [Window; 2],
     },
     #[error(
         "{} and {}: neither has a layer {layer}, nor any with a name: leave out --layer",
@@ -136,17 +134,6 @@ pub(crate) enum Failure {
     StandardOutput(io::Error),
     #[error("a terminal shows no pictures: send standard output to a file or to a program")]
     Terminal,
-}
-
-/// The first and the last pixel of a data window of this width and height, from the upper left.
-fn window(corner: [i32; 2], size: [u32; 2]) -> String {
-    let [left, top] = corner.map(i64::from);
-    let [width, height] = size.map(i64::from);
-    format!(
-        "({left}, {top}) to ({}, {})",
-        left + width - 1,
-        top + height - 1
-    )
 }
 
 /// Does what the words of a command line say, of which the first is the program's name.

@@ -12,6 +12,7 @@ mod srgb;
 mod stream;
 mod unfinished;
 pub(crate) mod whole_file;
+mod window;
 
 use std::fmt;
 use std::ops::Deref;
@@ -23,6 +24,7 @@ pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};
 pub use raster::Raster;
 pub use srgb::decode_srgb;
 pub use unfinished::abandon_unfinished;
+pub use window::Window;
 
 /// The largest number of pixels along a side.
 pub const MAX_SIZE: u32 = 16384;

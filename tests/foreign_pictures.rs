@@ -38,11 +38,16 @@ fn write_exr(folder: &TempDir, name: &str, parts: &[Channels<'_>]) {
         .iter()
         .map(|&channels| part(channels, [0, 0]))
         .collect();
-    write_parts(&folder.path().join(name), parts);
+    write_parts(&folder.path().join(name), [0, 0], parts);
 }
 
-fn write_parts(path: &Path, parts: SmallVec<[Part<AnyChannels<FlatSamples>>; 2]>) {
-    let window = IntegerBounds::from_dimensions((2, 2));
+/// Writes an EXR whose display window has 2 × 2 pixels from `corner` on.
+fn write_parts(
+    path: &Path,
+    corner: [i32; 2],
+    parts: SmallVec<[Part<AnyChannels<FlatSamples>>; 2]>,
+) {
+    let window = IntegerBounds::new((corner[0], corner[1]), (2, 2));
     let file = File::from_layers(ImageAttributes::new(window), parts);
     file.write().to_file(path).unwrap();
 }
@@ -166,7 +171,7 @@ fn a_part_is_not_read_out_of_another_one() {
     let color = [("R", 1.0), ("G", 1.0), ("B", 1.0)];
     let mut parts = ["one", "two"].map(|name| part((name, &color), [0, 0]));
     parts[1].encoding.compression = Compression::B44;
-    write_parts(&path, parts.into_iter().collect());
+    write_parts(&path, [0, 0], parts.into_iter().collect());
     let mut file = fs::read(&path).unwrap();
     let number = |file: &[u8], at: usize| u64::from_le_bytes(file[at..at + 8].try_into().unwrap());
     // The tables, of one place each, end where the first block begins.
@@ -224,17 +229,17 @@ fn what_is_not_opaque_is_refused_unless_its_alpha_is_to_be_ignored() {
 }
 
 #[test]
-fn pictures_of_other_data_windows_are_not_compared() {
+fn pictures_of_other_windows_are_not_compared() {
     let folder = tempfile::tempdir().unwrap();
     let channels = [("R", 0.25), ("G", 0.5), ("B", 4.0)];
     write_own(&folder, "own.exr", COLOR);
-    for (name, corner) in [
-        ("left.exr", [-3, 0]),
-        ("down.exr", [0, 1]),
-        ("again.exr", [0, 1]),
+    for (name, corner, shown) in [
+        ("left.exr", [-3, 0], [0, 0]),
+        ("down.exr", [0, 1], [0, 1]),
+        ("again.exr", [0, 1], [0, 1]),
     ] {
-        let parts = [part(("", &channels), corner)];
-        write_parts(&folder.path().join(name), parts.into_iter().collect());
+        let parts = [part(("", &channels), corner)].into_iter().collect();
+        write_parts(&folder.path().join(name), shown, parts);
     }
     for (line, windows) in [
         (
@@ -247,9 +252,95 @@ fn pictures_of_other_data_windows_are_not_compared() {
             "(-3, 0) to (-2, 1) and (0, 1) to (1, 2)",
         ),
     ] {
-        let said = refused(&folder, line);
-        assert!(said.contains(windows), "{said}");
+        for overlap in ["", " --overlap"] {
+            let said = refused(&folder, &format!("{line}{overlap}"));
+            assert!(said.contains(windows), "{said}");
+        }
     }
     equal(&folder, "down.exr again.exr");
     equal(&folder, "own.exr own.exr");
+}
+
+/// Writes an EXR of a scene of 6 × 4 pixels that has those of a data window, given by its upper
+/// left pixel and its size, and that shows all of them. The colour of each is that of its place.
+fn write_crop(folder: &TempDir, name: &str, corner: [i32; 2], size: [usize; 2]) {
+    let place = |i: usize| {
+        let column = corner[0] + (i % size[0]) as i32;
+        let row = corner[1] + (i / size[0]) as i32;
+        (100 + 10 * row + column) as f32
+    };
+    let samples = (0..size[0] * size[1]).map(place).collect::<Vec<_>>();
+    let channels = ["R", "G", "B"].map(|name| {
+        let samples = samples.clone();
+        AnyChannel::new(name, FlatSamples::F32(samples))
+    });
+    let attributes = LayerAttributes::default().with_position(Vec2(corner[0], corner[1]));
+    let channels = AnyChannels::sort(channels.into_iter().collect());
+    let size = (size[0], size[1]);
+    let part = Part::new(size, attributes, Encoding::FAST_LOSSLESS, channels);
+    let shown = IntegerBounds::from_dimensions((6, 4));
+    let file = File::from_layers(ImageAttributes::new(shown), vec![part]);
+    file.write().to_file(folder.path().join(name)).unwrap();
+}
+
+#[test]
+fn a_pixel_outside_of_a_data_window_is_black_or_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    write_crop(&folder, "whole.exr", [0, 0], [6, 4]);
+    write_crop(&folder, "crop.exr", [2, 1], [3, 2]);
+    let text = printed(&folder, "compare whole.exr crop.exr");
+    assert!(text.contains("6 × 4 pixels\n"), "{text}");
+    // 18 pixels are not in the crop.
+    assert!(text.contains("54 of 72 (75.000 %)"), "{text}");
+    let worst = "column 5, row 3 from the top, 0 from the bottom: [135.0, 135.0, 135.0] and [0.0, 0.0, 0.0]";
+    assert!(text.contains(worst), "{text}");
+    let note = "note               crop.exr holds the pixels (2, 1) to (4, 2): of (0, 0) to (5, 3) those it lacks count as black: --overlap leaves them out\n";
+    assert!(text.ends_with(note), "{text}");
+    assert_eq!(text.matches("note").count(), 1);
+    helpers::failed(
+        &program(&folder, "compare crop.exr whole.exr --threshold 0")
+            .output()
+            .unwrap(),
+        1,
+        "crop",
+    );
+
+    let line = "compare whole.exr crop.exr --overlap --threshold 0 --json c.json";
+    let text = printed(&folder, line);
+    assert!(text.contains("3 × 2 pixels\n"), "{text}");
+    assert!(text.contains("0 of 18 (0.000 %)"), "{text}");
+    let note = "note               whole.exr holds the pixels (0, 0) to (5, 3): only (2, 1) to (4, 2) are compared\n";
+    assert!(text.ends_with(note), "{text}");
+    let json = fs::read_to_string(folder.path().join("c.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let window = serde_json::json!({"left": 2, "top": 1, "width": 3, "height": 2});
+    let whole = serde_json::json!({"left": 0, "top": 0, "width": 6, "height": 4});
+    for (name, expected) in [
+        ("/window", &window),
+        ("/a/data_window", &whole),
+        ("/b/data_window", &window),
+    ] {
+        assert_eq!(json.pointer(name), Some(expected), "{name} of {json}");
+    }
+}
+
+#[test]
+fn a_pixel_outside_of_the_display_window_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    write_crop(&folder, "whole.exr", [0, 0], [6, 4]);
+    write_crop(&folder, "beyond.exr", [-1, -2], [9, 8]);
+    for overlap in ["", " --overlap"] {
+        let line = format!("compare beyond.exr whole.exr --threshold 0{overlap}");
+        let text = printed(&folder, &line);
+        assert!(text.contains("0 of 72 (0.000 %)"), "{text}");
+        let note = "note               beyond.exr holds the pixels (-1, -2) to (7, 5): only (0, 0) to (5, 3) are compared\n";
+        assert!(text.ends_with(note), "{text}");
+    }
+    write_crop(&folder, "left.exr", [0, 0], [2, 4]);
+    write_crop(&folder, "right.exr", [2, 0], [4, 4]);
+    let said = refused(&folder, "left.exr right.exr --overlap");
+    let windows = "left.exr and right.exr: show pixels (0, 0) to (1, 3) and (2, 0) to (5, 3)";
+    assert!(said.contains(windows), "{said}");
+    let text = printed(&folder, "compare left.exr right.exr");
+    assert!(text.contains("72 of 72 (100.000 %)"), "{text}");
 }

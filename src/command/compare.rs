@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use firsthit::difference::{Difference, PixelDifference, save_heat};
-use firsthit::image::{Format, LoadError, LoadOptions, LoadedImage, Raster};
+use firsthit::image::{Format, LoadError, LoadOptions, LoadedImage, Raster, Window};
 use firsthit::report;
 
 use super::arguments::finite;
@@ -34,6 +34,10 @@ pub(crate) struct Arguments {
     /// Compare colours as they are stored where pixels are not opaque, which is refused otherwise
     #[arg(long)]
     ignore_alpha: bool,
+    /// Compare only the pixels that both have, where data windows of .exr files differ: a cropped
+    /// picture with a whole one; if not given, a pixel that one of them lacks counts as black
+    #[arg(long)]
+    overlap: bool,
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
@@ -54,7 +58,10 @@ pub(crate) struct Arguments {
 
 /// Pictures and how far they are apart.
 struct Compared {
+    /// The pictures, of one window.
     pictures: [LoadedImage; 2],
+    /// The data windows of their files.
+    data_windows: [Window; 2],
     samples: Difference,
     pixels: PixelDifference,
 }
@@ -128,7 +135,7 @@ impl Arguments {
             layer: self.layer.clone(),
             ignore_alpha: self.ignore_alpha,
         };
-        let pictures = [load(&self.a, &options)?, load(&self.b, &options)?];
+        let mut pictures = [load(&self.a, &options)?, load(&self.b, &options)?];
         let [a, b] = &pictures;
         if let Some(layer) = &self.layer
             && a.layer.is_empty()
@@ -140,6 +147,14 @@ impl Arguments {
                 layer: layer.clone(),
             });
         }
+        let data_windows = [a.data_window(), b.data_window()];
+        if let Some(window) = self.window(a, b)? {
+            for picture in &mut pictures {
+                picture.image = picture.pixels_of(window)?;
+                picture.corner = window.corner;
+            }
+        }
+        let [a, b] = &pictures;
         let sizes = |reason| Failure::Sizes {
             a: self.a.clone(),
             b: self.b.clone(),
@@ -148,18 +163,38 @@ impl Arguments {
         let samples = Difference::of(&a.image, &b.image).map_err(sizes)?;
         let pixels = PixelDifference::of(&a.image, &b.image).map_err(sizes)?;
         if a.corner != b.corner {
-            return Err(Failure::Windows {
-                a: self.a.clone(),
-                b: self.b.clone(),
-                corners: [a.corner, b.corner],
-                size: [a.image.width(), a.image.height()],
-            });
+            return Err(self.windows_differ(data_windows));
         }
         Ok(Compared {
             pictures,
+            data_windows,
             samples,
             pixels,
         })
+    }
+
+    /// The pixels to compare, where two data windows are parts of one display window; `None` where
+    /// they are equal, or the display windows are not.
+    fn window(&self, a: &LoadedImage, b: &LoadedImage) -> Result<Option<Window>, Failure> {
+        let (data, display) = ([a.data_window(), b.data_window()], a.display_window);
+        if data[0] == data[1] || display != b.display_window {
+            return Ok(None);
+        }
+        let shown = data.map(|window| window.intersection(display));
+        let window = match shown {
+            [Some(a), Some(b)] if self.overlap => a.intersection(b),
+            [Some(_), Some(_)] => Some(display),
+            _ => None,
+        };
+        window.map(Some).ok_or_else(|| self.windows_differ(data))
+    }
+
+    fn windows_differ(&self, windows: [Window; 2]) -> Failure {
+        Failure::Windows {
+            a: self.a.clone(),
+            b: self.b.clone(),
+            windows,
+        }
     }
 
     /// The first limit that the pictures are beyond.

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use ::exr::compression::Compression;
 
-use super::{ImageError, MAX_SIZE, Raster};
+use super::{ImageError, MAX_SIZE, Raster, Window};
 pub use format::InputFormat;
 
 /// A file that no picture can be read from. Each message is one line.
@@ -115,6 +115,9 @@ pub struct LoadedImage {
     /// upper left pixel, in the coordinates that all windows of EXRs have. `[0, 0]` in a file that
     /// has no windows.
     pub corner: [i32; 2],
+    /// The pixels that are meant to be shown: an EXR's display window, all pixels of a file that
+    /// has no windows.
+    pub display_window: Window,
     /// The whole number that stands for 1; `None` in a file of floats.
     pub largest: Option<u16>,
     /// The name of its layer; empty where the file gives it none.
@@ -133,10 +136,13 @@ impl LoadedImage {
     }
 
     /// A picture of floats, all that its file holds.
-    fn of_floats(image: Raster) -> LoadedImage {
+    pub(super) fn of_floats(image: Raster) -> LoadedImage {
+        let corner = [0, 0];
+        let size = [image.width(), image.height()];
         LoadedImage {
             image,
-            corner: [0, 0],
+            corner,
+            display_window: Window { corner, size },
             largest: None,
             layer: String::new(),
             other_layers: Vec::new(),

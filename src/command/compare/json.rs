@@ -1,6 +1,7 @@
 //! A comparison for programs.
 
 use firsthit::difference::{WorstPixel, limit};
+use firsthit::image::Window;
 use serde::Serialize;
 
 use super::{Arguments, Compared};
@@ -15,6 +16,8 @@ struct Json {
     size: Option<u32>,
     width: u32,
     height: u32,
+    /// Where the pixels lie that are compared.
+    window: JsonWindow,
     samples: u64,
     wrong: u64,
     max_ulp: u32,
@@ -38,7 +41,29 @@ struct JsonPicture {
     path: String,
     layer: String,
     other_layers: Vec<String>,
+    data_window: JsonWindow,
     nans: u64,
+}
+
+/// A rectangle in the pixel space of OpenEXR, where rows count down.
+#[derive(Serialize)]
+struct JsonWindow {
+    left: i32,
+    top: i32,
+    width: u32,
+    height: u32,
+}
+
+impl From<Window> for JsonWindow {
+    fn from(window: Window) -> JsonWindow {
+        let ([left, top], [width, height]) = (window.corner, window.size);
+        JsonWindow {
+            left,
+            top,
+            width,
+            height,
+        }
+    }
 }
 
 /// So many pixels are off by more than this.
@@ -68,6 +93,7 @@ pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bo
         path: arguments.paths()[place].display().to_string(),
         layer: compared.pictures[place].layer.clone(),
         other_layers: compared.pictures[place].other_layers.clone(),
+        data_window: compared.data_windows[place].into(),
         nans: samples.nans[place],
     };
     let beyond = |counts: &[u64]| {
@@ -93,6 +119,7 @@ pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bo
         size: (width == height).then_some(width),
         width,
         height,
+        window: compared.pictures[0].data_window().into(),
         samples: samples.samples,
         wrong: samples.wrong,
         max_ulp: samples.max_steps,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use firsthit::difference::{Difference, PixelDifference, WorstPixel, limit};
-use firsthit::image::LoadedImage;
+use firsthit::image::{LoadedImage, Window};
 
 use super::{Arguments, Compared};
 
@@ -55,8 +55,11 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
         beyond(beyond_steps),
         beyond(beyond_bytes),
     );
-    for (path, picture) in [a, b].into_iter().zip(&compared.pictures) {
-        for note in [layers(picture), rounding(picture)].into_iter().flatten() {
+    let pictures = compared.pictures.iter().zip(compared.data_windows);
+    for (path, (picture, data_window)) in [a, b].into_iter().zip(pictures) {
+        let window = missing(data_window, picture.data_window());
+        let notes = [window, layers(picture), rounding(picture)];
+        for note in notes.into_iter().flatten() {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "note               {path}{note}");
         }
@@ -88,6 +91,19 @@ fn beyond(counts: &[u64]) -> String {
     let counts = counts.enumerate();
     let counts = counts.map(|(place, count)| format!("{count} beyond {}", limit(place)));
     counts.collect::<Vec<_>>().join(", ")
+}
+
+/// Which pixels the data window holds, where others are compared.
+fn missing(data_window: Window, compared: Window) -> Option<String> {
+    (data_window != compared).then(|| {
+        let consequence = match data_window.intersection(compared) == Some(compared) {
+            true => format!("only {compared} are compared"),
+            false => {
+                format!("of {compared} those it lacks count as black: --overlap leaves them out")
+            }
+        };
+        format!(" holds the pixels {data_window}: {consequence}")
+    })
 }
 
 /// Which layer was read, where there are others.

@@ -15,7 +15,7 @@ use ::exr::prelude::f16;
 
 use super::layers::{self, Layer, Role};
 use super::{LoadOptions, LoadedImage, Problem, black, checked_size};
-use crate::image::{MAX_SIZE, Raster};
+use crate::image::{MAX_SIZE, Raster, Window};
 
 impl From<Error> for Problem {
     fn from(error: Error) -> Problem {
@@ -64,6 +64,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     let header = &file.headers()[layer.part];
     check_part(header)?;
     let Vec2(left, top) = header.own_attributes.layer_position;
+    let display = header.shared_attributes.display_window;
     let mut image = black(header.layer_size.width(), header.layer_size.height())?;
     let chunks = file.filter_chunks(false, |_, tile, block| {
         block.layer == layer.part && tile.is_largest_resolution_level()
@@ -88,6 +89,11 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
     Ok(LoadedImage {
         image,
         corner: [left, top],
+        display_window: Window {
+            corner: [display.position.x(), display.position.y()],
+            size: [display.size.width(), display.size.height()]
+                .map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
+        },
         largest: None,
         layer: layer.name,
         other_layers,
