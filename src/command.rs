@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use firsthit::diagnosis::ExaminationError;
-use firsthit::difference::{HeatError, SizesDiffer};
+use firsthit::difference::{FlipError, HeatError, SizesDiffer};
 use firsthit::image::{ImageError, LoadError, SaveError, Window};
 use firsthit::program::ProgramError;
 use firsthit::report::{PlotError, ReportError};
@@ -113,6 +113,8 @@ pub(crate) enum Failure {
         b: PathBuf,
         layer: String,
     },
+    #[error(transparent)]
+    Flip(#[from] FlipError),
     #[error(transparent)]
     Heat(#[from] HeatError),
     #[error(

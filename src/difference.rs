@@ -5,12 +5,14 @@
 //! it is a whole number, and it can be counted without knowing more of the truth than its nearest
 //! f32.
 
+mod flip;
 #[cfg(feature = "program")]
 mod heat;
 mod pixels;
 mod scale;
 
 use crate::image::{Raster, display_byte};
+pub use flip::{FlipError, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, flip};
 #[cfg(feature = "program")]
 pub use heat::{HeatError, save_heat};
 pub use pixels::{PixelDifference, WorstPixel, limit};

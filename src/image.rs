@@ -23,6 +23,7 @@ pub use format::Format;
 pub use load::{InputFormat, LoadError, LoadOptions, LoadedImage};
 pub use raster::Raster;
 pub use srgb::decode_srgb;
+pub(crate) use srgb::light;
 pub use unfinished::abandon_unfinished;
 pub use window::Window;
 

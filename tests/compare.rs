@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Output;
 
 use firsthit::Image;
-use firsthit::difference::{Difference, error_color};
+use firsthit::difference::{Difference, PIXELS_PER_DEGREE, error_color, flip};
 use firsthit::image::{Raster, display_byte};
 use tempfile::TempDir;
 
@@ -526,6 +526,47 @@ fn programs_are_told_the_same_as_json() {
     assert!(self::text(&output.stdout).contains("\"within_limits\": false"));
     let said = failed(&folder, "a.exr b.exr --json none/c.json", 1);
     assert!(said.contains("none/c.json: cannot be written"), "{said}");
+}
+
+#[test]
+fn flip_is_said_if_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(&folder, "a.exr", &picture(&[]));
+    saved(&folder, "b.exr", &picture(&[(0, 0.75), (7, f32::NAN)]));
+    let [a, b] = ["a.exr", "b.exr"].map(|name| Raster::load(folder.path().join(name)).unwrap());
+    let json = |line: &str| -> serde_json::Value {
+        serde_json::from_str(&compared(&folder, &format!("{line} --json -"))).unwrap()
+    };
+    for (options, degrees) in [
+        ("--flip", PIXELS_PER_DEGREE),
+        ("--flip --pixels-per-degree 20.5", 20.5),
+    ] {
+        let mean = flip(&a, &b, degrees).unwrap();
+        let text = compared(&folder, &format!("a.exr b.exr {options}"));
+        let said = format!(
+            "{mean:.6} in the mean, at {degrees:.2} pixels per degree, of samples taken for sRGB"
+        );
+        assert_eq!(line(&text, "FLIP"), said);
+        let json = json(&format!("a.exr b.exr {options}"));
+        assert_eq!(json.pointer("/flip"), Some(&serde_json::json!(mean)));
+        let degrees = serde_json::json!(degrees);
+        assert_eq!(json.pointer("/pixels_per_degree"), Some(&degrees));
+    }
+    assert!(!compared(&folder, "a.exr b.exr").contains("FLIP"));
+    assert_eq!(
+        json("a.exr b.exr").pointer("/flip"),
+        Some(&serde_json::Value::Null)
+    );
+    for options in [
+        "--pixels-per-degree 20",
+        "--flip --pixels-per-degree 0",
+        "--flip --pixels-per-degree -20",
+        "--flip --pixels-per-degree 1001",
+        "--flip --pixels-per-degree NaN",
+        "--flip --pixels-per-degree many",
+    ] {
+        failed(&folder, &format!("a.exr b.exr {options}"), 2);
+    }
 }
 
 #[test]

@@ -25,6 +25,7 @@ mod doubt;
 mod drivers;
 #[cfg(feature = "program")]
 mod explain;
+mod flip;
 #[cfg(feature = "program")]
 mod foreign_pictures;
 mod fuzz;

@@ -7,7 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use firsthit::difference::{Difference, PixelDifference, save_heat};
+use firsthit::difference::{
+    Difference, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, PixelDifference, flip, save_heat,
+};
 use firsthit::image::{Format, LoadError, LoadOptions, LoadedImage, Raster, Window};
 use firsthit::report;
 
@@ -38,6 +40,14 @@ pub(crate) struct Arguments {
     /// picture with a whole one; if not given, a pixel that one of them lacks counts as black
     #[arg(long)]
     overlap: bool,
+    /// Say how different they look to whoever flips between them, too: the mean error of FLIP, from
+    /// 0 to 1, of samples as an sRGB display shows them. It takes seconds for a large picture
+    #[arg(long)]
+    flip: bool,
+    /// The pixels per degree of the visual field, for FLIP; those of a display of 3840 pixels, seen
+    /// from as far away as it is wide, if not given: 67.02
+    #[arg(long, value_name = "N", requires = "flip", allow_hyphen_values = true, value_parser = pixels_per_degree)]
+    pixels_per_degree: Option<f64>,
     /// A .png to write: where they differ and how much, in false colours above their scale
     #[arg(short, long, value_name = "HEAT.png")]
     output: Option<PathBuf>,
@@ -64,6 +74,13 @@ struct Compared {
     data_windows: [Window; 2],
     samples: Difference,
     pixels: PixelDifference,
+    flip: Option<Flip>,
+}
+
+/// The mean error of FLIP.
+struct Flip {
+    mean: f64,
+    pixels_per_degree: f64,
 }
 
 /// The largest error that passes.
@@ -71,6 +88,14 @@ fn most(text: &str) -> Result<f64, &'static str> {
     match finite(text)? {
         most @ 0.0.. => Ok(most),
         _ => Err("a number from 0 on is needed"),
+    }
+}
+
+fn pixels_per_degree(text: &str) -> Result<f64, &'static str> {
+    let number = finite(text)?;
+    match PIXELS_PER_DEGREE_RANGE.contains(&number) {
+        true => Ok(number),
+        false => Err("a number from 1 to 1000 is needed"),
     }
 }
 
@@ -165,9 +190,20 @@ impl Arguments {
         if a.corner != b.corner {
             return Err(self.windows_differ(data_windows));
         }
+        let flip = match self.flip {
+            true => {
+                let pixels_per_degree = self.pixels_per_degree.unwrap_or(PIXELS_PER_DEGREE);
+                Some(Flip {
+                    mean: flip(&a.image, &b.image, pixels_per_degree)?,
+                    pixels_per_degree,
+                })
+            }
+            false => None,
+        };
         Ok(Compared {
             pictures,
             data_windows,
+            flip,
             samples,
             pixels,
         })

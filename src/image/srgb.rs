@@ -39,21 +39,20 @@ impl Image {
 /// assert_eq!(decode_srgb(1.0), 1.0);
 /// ```
 pub fn decode_srgb(sample: f32) -> f32 {
-    let x = f64::from(sample);
-    if x.is_nan() {
+    if sample.is_nan() {
         return sample;
     }
-    if x <= LINE {
+    let light = light(sample);
+    if f64::from(sample) <= LINE {
         // The product is exact. A quotient that is not on a midpoint between two f32s is at least
         // 1/646 of the f32s' distance off it, so that rounding to f64 first changes nothing.
-        return (x * 25.0 / 323.0) as f32;
+        return light as f32;
     }
-    let t = (x * 200.0 + 11.0) / 211.0;
-    // Beyond 2^60 the curve is beyond 2^144, and no f32 is.
-    if t > 2_f64.powi(60) {
+    // No f32 is beyond 2^128.
+    if light > 2_f64.powi(144) {
         return f32::INFINITY;
     }
-    let mut rounded = libm::pow(t, 2.4) as f32;
+    let mut rounded = light as f32;
     while is_above(sample, midpoint(rounded)) {
         rounded = rounded.next_up();
     }
@@ -61,6 +60,15 @@ pub fn decode_srgb(sample: f32) -> f32 {
         rounded = rounded.next_down();
     }
     rounded
+}
+
+/// The same in f64, a few units in the last place off above the line.
+pub(crate) fn light(sample: f32) -> f64 {
+    let x = f64::from(sample);
+    match x <= LINE {
+        true => x * 25.0 / 323.0,
+        false => libm::pow((x * 200.0 + 11.0) / 211.0, 2.4),
+    }
 }
 
 /// The number halfway from a positive `lower` to the next f32, where 2¹²⁸ follows the largest.

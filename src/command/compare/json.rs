@@ -27,6 +27,9 @@ struct Json {
     max_relative: f64,
     eight_bit_differences: u64,
     psnr: f64,
+    /// `null` without `--flip`.
+    flip: Option<f64>,
+    pixels_per_degree: Option<f64>,
     nan_against_number: u64,
     pixels: u64,
     pixels_beyond_ulp: Vec<Beyond>,
@@ -129,6 +132,8 @@ pub(super) fn json(arguments: &Arguments, compared: &Compared, within_limits: bo
         max_relative: samples.max_relative,
         eight_bit_differences: samples.eight_bit,
         psnr: samples.psnr(),
+        flip: compared.flip.as_ref().map(|flip| flip.mean),
+        pixels_per_degree: compared.flip.as_ref().map(|flip| flip.pixels_per_degree),
         nan_against_number: samples.nan_against_number,
         pixels: pixels.pixels,
         pixels_beyond_ulp: beyond(&pixels.beyond_steps),

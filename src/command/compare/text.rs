@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use firsthit::difference::{Difference, PixelDifference, WorstPixel, limit};
 use firsthit::image::{LoadedImage, Window};
 
-use super::{Arguments, Compared};
+use super::{Arguments, Compared, Flip};
 
 /// Some lines, each with what it tells of at its beginning.
 pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
@@ -55,6 +55,17 @@ pub(super) fn text(arguments: &Arguments, compared: &Compared) -> String {
         beyond(beyond_steps),
         beyond(beyond_bytes),
     );
+    if let Some(Flip {
+        mean,
+        pixels_per_degree,
+    }) = compared.flip
+    {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "FLIP               {mean:.6} in the mean, at {pixels_per_degree:.2} pixels per degree, of samples taken for sRGB"
+        );
+    }
     let pictures = compared.pictures.iter().zip(compared.data_windows);
     for (path, (picture, data_window)) in [a, b].into_iter().zip(pictures) {
         let window = missing(data_window, picture.data_window());
