@@ -31,11 +31,13 @@ pub struct WorstPixel {
     pub steps: Option<u32>,
 }
 
-/// The limit at `place` of those that pixels are beyond: 0, 1, 2, 4, 8 …
+/// The limit at `place` of [`PixelDifference::beyond_steps`] and
+/// [`PixelDifference::beyond_bytes`]: 0, 1, 2, 4, 8 … 2³¹ for 0 to 32, and the largest u32 beyond.
 pub fn limit(place: usize) -> u32 {
     match place {
         0 => 0,
-        _ => 1 << (place - 1),
+        1..=32 => 1 << (place - 1),
+        _ => u32::MAX,
     }
 }
 
