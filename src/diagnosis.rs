@@ -25,23 +25,23 @@
 //! Some mistakes of tracers are well known, and their pictures can be computed. Where such a
 //! picture explains the given one, the given one earns a [`Hint`] at what to look at in the code.
 
+mod decision_words;
 mod fits;
 mod hint;
 mod hypotheses;
 mod pixel;
 mod verdict;
-mod words;
 mod wrong_decision;
 
 use crate::image::ImageError;
 use crate::tracer::{Colors, Decision, TraceError, with_colors};
 use crate::{Image, Kernel, Scene, Stage, Tracer, memory};
+use decision_words::DecisionWords;
 use fits::{Candidates, is_within};
 pub use hint::Hint;
 use hypotheses::{Sample, hints_of_known_mistakes, is_scattered_with_shadow};
 pub use pixel::PixelDiagnosis;
 pub use verdict::{Summary, Verdict};
-use words::Words;
 pub use wrong_decision::{WrongDecision, WrongPixels};
 
 /// The usual tolerance: the distance of two neighbouring bytes of a display. A sample may be as far
@@ -192,7 +192,7 @@ impl<'a> Examination<'a> {
     }
 
     fn words(&self, verdict: Verdict, explanations: &[Decision], truth: Decision) -> String {
-        let words = Words {
+        let words = DecisionWords {
             scene: self.scene,
             stage: self.stage,
         };

@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use firsthit::fault;
 use firsthit::image::abandon_unfinished;
+use firsthit::panics;
 use firsthit::program;
 
 pub(crate) use allocator::Allocator;
@@ -74,11 +74,11 @@ fn claim() {
 /// The panic hook: a panic that nobody catches is one line, and a backtrace if RUST_BACKTRACE asks
 /// for it.
 fn fault(panic: &PanicHookInfo<'_>) {
-    if fault::is_caught() {
+    if panics::is_caught() {
         return;
     }
     claim();
-    let words = fault::words(panic.payload());
+    let words = panics::words(panic.payload());
     // The standard library panics where a new thread is refused the memory for its signals.
     if words.contains("(os error 12)") {
         crate::command::say(&format!("not enough memory: {words}"));

@@ -47,7 +47,7 @@
 #![cfg_attr(
     feature = "screen",
     doc = "| [`screen`] | the retained texture and its quad; EGL and OSMesa without a window |",
-    doc = "| [`fault`] | which panics become errors, for a program's panic hook |"
+    doc = "| [`panics`] | which panics become errors, for a program's panic hook |"
 )]
 #![cfg_attr(
     feature = "program",
@@ -96,11 +96,11 @@
 pub mod camera;
 pub mod diagnosis;
 pub mod difference;
-#[cfg(feature = "screen")]
-pub mod fault;
 pub mod image;
 pub mod memory;
 mod number;
+#[cfg(feature = "screen")]
+pub mod panics;
 mod parting;
 #[cfg(feature = "program")]
 pub mod program;

@@ -5,12 +5,12 @@ use std::thread;
 use std::time::Duration;
 
 /// How many milliseconds the thread that holds the lock may take.
-const PATIENCE: u32 = 1000;
+const TIMEOUT_MS: u32 = 1000;
 
 /// Locks `mutex`, if that is free within a second: the thread that holds it may be this one, which
 /// has run out of memory.
 pub(crate) fn lock<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
-    (0..PATIENCE).find_map(|_| match mutex.try_lock() {
+    (0..TIMEOUT_MS).find_map(|_| match mutex.try_lock() {
         Ok(guard) => Some(guard),
         Err(TryLockError::Poisoned(guard)) => Some(guard.into_inner()),
         Err(TryLockError::WouldBlock) => {

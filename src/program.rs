@@ -17,6 +17,7 @@
 //! and blue of each pixel, rows from the bottom, as `glDrawPixels` takes them. When its standard
 //! input ends, it leaves.
 
+mod command_words;
 mod diagnostics;
 mod error;
 mod group;
@@ -25,7 +26,6 @@ mod output;
 mod process;
 mod request;
 mod scene_files;
-mod words;
 
 use std::io;
 use std::path::PathBuf;
@@ -36,20 +36,20 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::{Canceller, Image, Render, RenderError, Scene, Stage};
+use command_words::CommandWords;
 use diagnostics::Diagnostics;
 use process::Process;
 use request::Request;
 use scene_files::SceneFiles;
-use words::Words;
 
 pub use error::{Fault, Partial, ProgramError};
 pub use held::end_all;
 
 /// How long a program that cannot be started since a linker still has it open is waited for.
-const WRITTEN: Duration = Duration::from_secs(1);
+const BUSY_FILE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// How long to sleep between two tries to start it.
-const LOOK: Duration = Duration::from_millis(10);
+const RETRY_INTERVAL: Duration = Duration::from_millis(10);
 
 /// A program that is asked for pictures.
 ///
@@ -69,7 +69,7 @@ const LOOK: Duration = Duration::from_millis(10);
 /// On Unix it runs in a process group of its own, which is ended whenever the program fails, and
 /// when this is dropped: no process that it has started in that group goes on running.
 pub struct Program {
-    words: Words,
+    words: CommandWords,
     timeout: Duration,
     diagnostics: Diagnostics,
     scenes: SceneFiles,
@@ -90,7 +90,7 @@ impl Program {
     /// is longer than 4 KiB comes in pieces. Control characters in it are the caller's business.
     ///
     /// # Errors
-    /// [`ProgramError::Words`] where `command` has an open quote, [`ProgramError::Empty`] where it
+    /// [`ProgramError::CommandWords`] where `command` has an open quote, [`ProgramError::Empty`] where it
     /// has no words, [`ProgramError::Folder`] where no scene can be written for the program,
     /// [`ProgramError::Start`] where the program cannot be started.
     pub fn start(
@@ -98,7 +98,7 @@ impl Program {
         timeout: Duration,
         diagnostics: impl FnMut(&str) + Send + 'static,
     ) -> Result<Program, ProgramError> {
-        let words = Words::split(command)?;
+        let words = CommandWords::split(command)?;
         let scenes = SceneFiles::create().map_err(|reason| words.folder_error(reason))?;
         let mut program = Program {
             words,
@@ -114,14 +114,14 @@ impl Program {
     }
 
     fn start_process(&self) -> Result<Process, ProgramError> {
-        let deadline = Instant::now() + WRITTEN;
+        let deadline = Instant::now() + BUSY_FILE_TIMEOUT;
         loop {
             match Process::start(&self.words, &self.diagnostics) {
                 Err(reason)
                     if reason.kind() == io::ErrorKind::ExecutableFileBusy
                         && Instant::now() < deadline =>
                 {
-                    thread::sleep(LOOK);
+                    thread::sleep(RETRY_INTERVAL);
                 }
                 started => {
                     return started.map_err(|reason| ProgramError::Start {

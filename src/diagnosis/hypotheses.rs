@@ -15,11 +15,11 @@ use crate::stage::Stage;
 use crate::tracer::{Decision, Far, Mistake, Mistaken, Toward, with_pixels};
 
 /// The fewest pixels that can tell a hypothesis from the truth: fewer might agree by chance.
-const ENOUGH: u32 = 16;
+const MIN_TELLING: u32 = 16;
 
 /// The least share of the telling pixels and of the wrong ones that must agree with a hypothesis.
 /// All would, but people make a mistake in slightly different ways.
-const MOST: f64 = 0.9;
+const MIN_SHARE: f64 = 0.9;
 
 /// The most pixels of a sample: a border one pixel wide around a solid is hundreds of them.
 const SAMPLE: usize = 1 << 15;
@@ -29,7 +29,7 @@ const SAMPLE: usize = 1 << 15;
 const TESTS: usize = 1 << 22;
 
 /// The number of wrong pixels after which a hypothesis is given up that explains less than half.
-const PATIENCE: u32 = 64;
+const GIVE_UP_AFTER: u32 = 64;
 
 /// Pixels of a picture, each with what is given and what is true.
 pub(super) struct Sample {
@@ -91,12 +91,13 @@ impl Sample {
                 wrong += 1;
                 explained += u32::from(is_shown);
             }
-            if wrong >= PATIENCE && 2 * explained < wrong {
+            if wrong >= GIVE_UP_AFTER && 2 * explained < wrong {
                 return None;
             }
         }
-        let is_most = |part: u32, of: u32| f64::from(part) >= MOST * f64::from(of);
-        let is_earned = telling >= ENOUGH && is_most(shown, telling) && is_most(explained, wrong);
+        let is_most = |part: u32, of: u32| f64::from(part) >= MIN_SHARE * f64::from(of);
+        let is_earned =
+            telling >= MIN_TELLING && is_most(shown, telling) && is_most(explained, wrong);
         is_earned.then(|| f64::from(unlike) / f64::from(all))
     }
 }
@@ -292,7 +293,7 @@ pub(super) fn is_scattered_with_shadow(
         shaded += 1;
         between += u32::from(is_between(index));
     }
-    shaded >= ENOUGH && SCATTERED * between >= shaded
+    shaded >= MIN_TELLING && SCATTERED * between >= shaded
 }
 
 fn is_in_shadow(decision: Decision) -> bool {

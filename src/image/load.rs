@@ -7,7 +7,7 @@ mod pfm;
 mod png;
 mod ppm;
 mod samples;
-mod words;
+mod tokens;
 
 use std::fs::File;
 use std::io::{self, BufReader};

@@ -17,7 +17,7 @@ use crate::tracer::TraceError;
 pub enum ProgramError {
     /// The command cannot be split into words.
     #[error("{0}: a quote or a backslash is left open: close it")]
-    Words(String),
+    CommandWords(String),
     /// The command has no words.
     #[error("the command of a program is empty: give its path, or its name in PATH")]
     Empty,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::held;
 
 /// How long to sleep between two looks at a process.
-const LOOK: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// The group. Dropped, it is ended.
 pub(super) struct Group {
@@ -46,7 +46,7 @@ impl Group {
             if Instant::now() >= deadline {
                 return false;
             }
-            thread::sleep(LOOK);
+            thread::sleep(POLL_INTERVAL);
         }
         true
     }

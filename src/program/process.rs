@@ -8,19 +8,19 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::command_words::CommandWords;
 use super::diagnostics::{self, Diagnostics};
 use super::error::{Fault, Partial};
 use super::group::Group;
 use super::output;
-use super::words::Words;
 use crate::Image;
 
 /// How long a process has to leave once its input has ended.
-const LEAVE: Duration = Duration::from_secs(1);
+const EXIT_GRACE: Duration = Duration::from_secs(1);
 
 /// How long to wait for bytes before it is looked whether the process has ended, and how long its
 /// last bytes and lines may take from there.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The most bytes that are shown of an answer.
 const SHOWN: usize = 40;
@@ -53,7 +53,7 @@ enum Stop {
 }
 
 impl Process {
-    pub(super) fn start(words: &Words, to: &Diagnostics) -> io::Result<Process> {
+    pub(super) fn start(words: &CommandWords, to: &Diagnostics) -> io::Result<Process> {
         let mut command = words.command();
         command
             .stdin(Stdio::piped())
@@ -144,7 +144,7 @@ impl Process {
             let left = deadline.map_or(Duration::MAX, |deadline| {
                 deadline.saturating_duration_since(Instant::now())
             });
-            match self.output.recv_timeout(left.min(LOOK)) {
+            match self.output.recv_timeout(left.min(POLL_INTERVAL)) {
                 Ok(chunk) => return Ok(chunk),
                 Err(RecvTimeoutError::Disconnected) => return Err(Stop::End),
                 // Another process holds the pipe, and no more need come through it.
@@ -152,7 +152,7 @@ impl Process {
                 Err(RecvTimeoutError::Timeout) if is_cancelled.load(Relaxed) => {
                     return Err(Stop::Cancelled);
                 }
-                Err(RecvTimeoutError::Timeout) if left <= LOOK => return Err(Stop::Late),
+                Err(RecvTimeoutError::Timeout) if left <= POLL_INTERVAL => return Err(Stop::Late),
                 Err(RecvTimeoutError::Timeout) => has_ended = self.group.has_ended(),
             }
         }
@@ -160,7 +160,7 @@ impl Process {
 
     /// That it ended, or closed its standard output.
     fn ended(&mut self) -> Fault {
-        let has_ended = self.group.has_ended_by(Instant::now() + LEAVE);
+        let has_ended = self.group.has_ended_by(Instant::now() + EXIT_GRACE);
         let status = self.end();
         let answer = self.answer.partial();
         if has_ended {
@@ -193,14 +193,14 @@ impl Process {
     fn end(&mut self) -> ExitStatus {
         let status = self.group.end();
         // A process that has left the group may still hold the pipe.
-        let _ = self.diagnostics.recv_timeout(LOOK);
+        let _ = self.diagnostics.recv_timeout(POLL_INTERVAL);
         status
     }
 
     /// Lets it leave, and ends what has not left; that it wrote more than was asked for.
     pub(super) fn leave(mut self) -> Option<Fault> {
         self.requests = None;
-        let deadline = Instant::now() + LEAVE;
+        let deadline = Instant::now() + EXIT_GRACE;
         let surplus = self.next(Some(deadline), &AtomicBool::new(false)).ok();
         let fault = surplus.map(|bytes| self.surplus(bytes, self.answer.expected));
         if fault.is_none() {

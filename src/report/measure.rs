@@ -11,7 +11,7 @@ use crate::{Image, Kernel, Scene, Stage, Tracer};
 
 /// Few samples of a slow kernel, many of a fast one: about this long for each row and number of
 /// threads.
-const TIME: Duration = Duration::from_millis(1500);
+const MEASURING_TIME: Duration = Duration::from_millis(1500);
 
 /// The fewest samples of which a median is taken.
 pub(super) const MIN_SAMPLES: usize = 3;
@@ -198,7 +198,7 @@ pub(super) fn time(
 
 /// Whether so many samples suffice, of each of some `rows` that are measured in turn since `begin`.
 pub(super) fn is_enough(samples: usize, begin: Instant, rows: usize) -> bool {
-    let time = TIME.mul_f64(rows as f64);
+    let time = MEASURING_TIME.mul_f64(rows as f64);
     samples >= MAX_SAMPLES || (samples >= MIN_SAMPLES && begin.elapsed() >= time)
 }
 

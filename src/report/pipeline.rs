@@ -13,7 +13,7 @@ use crate::{Image, Kernel, Scene, Stage, Tracer};
 const ROUNDS: u64 = 2;
 
 /// About as long as each benchmark may take in all.
-const TIME: Duration = Duration::from_secs(1);
+const MAX_TIME: Duration = Duration::from_secs(1);
 
 /// At least this many frames that count.
 const MIN_FRAMES: usize = 3;
@@ -147,7 +147,7 @@ impl Benchmark {
                     break;
                 }
             }
-            if self.costs.len() >= MIN_FRAMES && self.time + begin.elapsed() > TIME {
+            if self.costs.len() >= MIN_FRAMES && self.time + begin.elapsed() > MAX_TIME {
                 break;
             }
         }

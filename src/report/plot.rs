@@ -17,7 +17,7 @@ use plotters::style::text_anchor::HPos;
 use super::{Group, Measured, Report, Row, Spread};
 use crate::Kernel;
 use axis::{ErrorAxis, LogAxis};
-use drawing::{Area, Drawn, INK, TIME, chart, color, font, shape};
+use drawing::{Area, Drawn, INK, TIME_AXIS, chart, color, font, shape};
 use scaling::ScalingPanel;
 
 /// A plot that cannot be drawn.
@@ -179,7 +179,7 @@ fn draw_panel(
     let chart = chart(
         place,
         &panel.title,
-        (times, TIME),
+        (times, TIME_AXIS),
         (errors, "error of a sample, f32 steps"),
     )?;
     let pixel = |time: f64, error: f64| chart.backend_coord(&(time, error));

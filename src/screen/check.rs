@@ -9,7 +9,7 @@ use crate::memory;
 
 /// The most pixels of a framebuffer that are compared: to compare four times as many would slow
 /// down the resizing of a window.
-const MOST: u32 = 1 << 20;
+const MAX_PIXELS: u32 = 1 << 20;
 
 /// A pixel of a framebuffer that is not what the picture says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Screen {
         placement: Placement,
         image: &Image,
     ) -> Option<Differs> {
-        let size = UVec2::new(surface.x, surface.y.min(MOST / surface.x.max(1)));
+        let size = UVec2::new(surface.x, surface.y.min(MAX_PIXELS / surface.x.max(1)));
         let mut bytes = Vec::new();
         let length = size.x as usize * size.y as usize * 4;
         // Without memory nothing is looked at.

@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_void};
 
 use super::ScreenError;
-use crate::fault::caught;
+use crate::panics::caught;
 
 /// Which OpenGL a context has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use glutin::prelude::PossiblyCurrentGlContext as _;
 
 use super::ScreenError;
 use super::context::{Context, Profile};
-use crate::fault::caught;
+use crate::panics::caught;
 
 const LIBRARY: &str = "libEGL.so.1";
 const PACKAGES: &str = "libegl1 libegl-mesa0 libgl1-mesa-dri";

@@ -21,11 +21,11 @@ use std::time::{Duration, Instant};
 /// The most threads of a pool. With four times as many the memory maps of a process run out on
 /// Linux, and where a new thread finds none for its signal stack, the standard library ends the
 /// process.
-const MOST: usize = 4096;
+const MAX_THREADS: usize = 4096;
 
 /// How long a thread looks for what it waits for before it sleeps: a little longer than a small
 /// frame needs on one thread before its first band, or after its last.
-const LOOK: Duration = Duration::from_micros(100);
+const SPIN_TIME: Duration = Duration::from_micros(100);
 
 /// Some threads, of which the caller's is one.
 pub(crate) struct Pool {
@@ -78,8 +78,8 @@ impl Pool {
             0 => thread::available_parallelism().map_or(1, usize::from),
             threads => threads,
         };
-        if threads > MOST {
-            let most = format!("{MOST} is the most");
+        if threads > MAX_THREADS {
+            let most = format!("{MAX_THREADS} is the most");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, most));
         }
         let mut pool = Pool {
@@ -285,7 +285,7 @@ fn look(condition: impl Fn() -> bool) -> bool {
         return true;
     }
     let begin = Instant::now();
-    while begin.elapsed() < LOOK {
+    while begin.elapsed() < SPIN_TIME {
         for _ in 0..16 {
             std::hint::spin_loop();
             if condition() {
@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn jobs_wake_workers_that_sleep_and_callers_that_do() {
         let mut pool = Pool::new(3).unwrap();
-        for pause in [2 * LOOK, LOOK, LOOK / 2, Duration::ZERO].repeat(JOBS / 40) {
+        for pause in [2 * SPIN_TIME, SPIN_TIME, SPIN_TIME / 2, Duration::ZERO].repeat(JOBS / 40) {
             run_jobs(&mut pool, 9);
             // Asleep, or about to be.
             thread::sleep(pause);
@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn a_pool_ends_whether_its_workers_look_or_sleep_or_never_worked() {
-        for pause in [Duration::ZERO, LOOK, 3 * LOOK] {
+        for pause in [Duration::ZERO, SPIN_TIME, 3 * SPIN_TIME] {
             for jobs in [0, 5] {
                 let mut pool = Pool::new(4).unwrap();
                 run_jobs(&mut pool, jobs);
@@ -419,7 +419,7 @@ mod tests {
     fn one_a_core_or_too_many() {
         let cores = thread::available_parallelism().unwrap().get();
         assert_eq!(Pool::new(0).unwrap().threads(), cores);
-        for threads in [MOST + 1, usize::MAX] {
+        for threads in [MAX_THREADS + 1, usize::MAX] {
             let error = Pool::new(threads).err().unwrap();
             assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
         }

@@ -15,7 +15,7 @@ use super::ViewerError;
 use super::error::reason;
 use super::library::load;
 use super::x11::Connection;
-use crate::fault::caught;
+use crate::panics::caught;
 
 /// A kind of display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

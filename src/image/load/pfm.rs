@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::BufReader;
 
 use super::samples::Samples;
-use super::words::Words;
+use super::tokens::Tokens;
 use super::{LoadedImage, Problem};
 
 pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
-    let mut words = Words(file);
-    let grey = match words.word()?.as_str() {
+    let mut tokens = Tokens(file);
+    let grey = match tokens.word()?.as_str() {
         "PF" => false,
         "Pf" => true,
         other => {
@@ -17,8 +17,8 @@ pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
             return Err(Problem::Damaged(reason));
         }
     };
-    let (width, height) = (words.number("its width")?, words.number("its height")?);
-    let scale: f32 = words.number("its scale")?;
+    let (width, height) = (tokens.number("its width")?, tokens.number("its height")?);
+    let scale: f32 = tokens.number("its scale")?;
     let float = match scale {
         1.0 => f32::from_be_bytes,
         -1.0 => f32::from_le_bytes,
@@ -31,12 +31,12 @@ pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
     };
     let mut samples = Samples::new(width, height)?;
     for _ in 0..samples.pixels() {
-        let mut next = || words.bytes().map(float);
+        let mut next = || tokens.bytes().map(float);
         samples.push(match grey {
             true => [next()?; 3],
             false => [next()?, next()?, next()?],
         })?;
     }
-    words.end()?;
+    tokens.end()?;
     Ok(LoadedImage::of_floats(samples.image_from_bottom()?))
 }

@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::BufReader;
 
 use super::samples::Samples;
-use super::words::Words;
+use super::tokens::Tokens;
 use super::{LoadedImage, Problem};
 
 pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
-    let mut words = Words(file);
-    let as_text = match words.word()?.as_str() {
+    let mut tokens = Tokens(file);
+    let as_text = match tokens.word()?.as_str() {
         "P3" => true,
         "P6" => false,
         other => {
@@ -17,8 +17,8 @@ pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
             return Err(Problem::Damaged(reason));
         }
     };
-    let (width, height) = (words.number("its width")?, words.number("its height")?);
-    let largest: u16 = words.number("its largest number")?;
+    let (width, height) = (tokens.number("its width")?, tokens.number("its height")?);
+    let largest: u16 = tokens.number("its largest number")?;
     if largest == 0 {
         return Err(Problem::Damaged("its largest number is 0".to_owned()));
     }
@@ -27,9 +27,9 @@ pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
         let mut pixel = [0.0; 3];
         for sample in &mut pixel {
             let number = match (as_text, largest) {
-                (true, _) => words.number("a sample")?,
-                (false, ..256) => u16::from(words.bytes::<1>()?[0]),
-                (false, _) => u16::from_be_bytes(words.bytes()?),
+                (true, _) => tokens.number("a sample")?,
+                (false, ..256) => u16::from(tokens.bytes::<1>()?[0]),
+                (false, _) => u16::from_be_bytes(tokens.bytes()?),
             };
             if number > largest {
                 let reason = format!("a sample is {number}, more than its largest, {largest}");
@@ -39,7 +39,7 @@ pub(super) fn read(file: BufReader<File>) -> Result<LoadedImage, Problem> {
         }
         samples.push(pixel)?;
     }
-    words.end()?;
+    tokens.end()?;
     Ok(LoadedImage::of_whole_numbers(
         samples.image_from_top()?,
         largest,

@@ -24,7 +24,7 @@ pub(super) fn font(size: u32, horizontal: HPos) -> TextStyle<'static> {
 }
 
 /// What the axes of times measure.
-pub(super) const TIME: &str = "time a frame, ms";
+pub(super) const TIME_AXIS: &str = "time a frame, ms";
 
 /// A grid in `place` over the axes `x` and `y`, with what they measure.
 pub(super) fn chart<'a, X, Y>(

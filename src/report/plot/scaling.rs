@@ -7,7 +7,7 @@ use plotters::style::text_anchor::HPos;
 use super::super::Spread;
 use super::super::scaling::Scaling;
 use super::axis::LogAxis;
-use super::drawing::{Area, Drawn, TIME, chart, color, font, shape};
+use super::drawing::{Area, Drawn, TIME_AXIS, chart, color, font, shape};
 use crate::Kernel;
 
 /// The scalings of a report, on one thread.
@@ -47,7 +47,7 @@ impl ScalingPanel {
         let spheres = LogAxis::over(marks.iter().map(|mark| mark.spheres));
         let times = LogAxis::over(marks.iter().flat_map(|mark| [mark.ms.min, mark.ms.max]));
         let title = "Time against the number of spheres";
-        let chart = chart(place, title, (spheres, "spheres"), (times, TIME))?;
+        let chart = chart(place, title, (spheres, "spheres"), (times, TIME_AXIS))?;
         let pixel = |mark: &Mark, ms: f64| chart.backend_coord(&(mark.spheres, ms));
 
         for kernel in Kernel::ALL {

@@ -10,9 +10,9 @@ use super::Problem;
 const MAX_WORD: usize = 64;
 
 /// What is left of a file.
-pub(super) struct Words<R>(pub(super) R);
+pub(super) struct Tokens<R>(pub(super) R);
 
-impl<R: BufRead> Words<R> {
+impl<R: BufRead> Tokens<R> {
     /// The next word, and past one character of white space behind it. Comments, from `#` to the
     /// end of a line, are skipped before it.
     pub(super) fn word(&mut self) -> Result<String, Problem> {

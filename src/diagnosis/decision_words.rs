@@ -7,12 +7,12 @@ use crate::tracer::{Decision, Seen, name};
 
 /// The words for the decisions of a scene in a stage.
 #[derive(Clone, Copy)]
-pub(super) struct Words<'s> {
+pub(super) struct DecisionWords<'s> {
     pub(super) scene: &'s Scene,
     pub(super) stage: Stage,
 }
 
-impl Words<'_> {
+impl DecisionWords<'_> {
     /// What a pixel shows in place of the truth, as a sentence without its subject.
     pub(super) fn shown(self, decision: Decision, truth: Decision) -> String {
         format!(
@@ -25,10 +25,10 @@ impl Words<'_> {
     /// Some decisions, one by one.
     pub(super) fn list(self, decisions: &[Decision]) -> String {
         /// A reader looks at no more.
-        const MOST: usize = 4;
+        const MAX_NOUNS: usize = 4;
         let mut nouns: Vec<String> = decisions.iter().map(|one| self.noun(*one)).collect();
-        if nouns.len() > MOST {
-            let more = nouns.split_off(MOST).len();
+        if nouns.len() > MAX_NOUNS {
+            let more = nouns.split_off(MAX_NOUNS).len();
             nouns.push(format!("{more} more"));
         }
         match nouns.pop() {
@@ -138,7 +138,7 @@ mod tests {
     fn a_wrong_decision_is_a_sentence_about_what_is_shown_and_what_is_true() {
         use Decision::{Background, Mirrored, Quadrant, Solid, Surface, SurfaceInShadow};
         let scene = Scene::builtin();
-        let words = Words {
+        let words = DecisionWords {
             scene: &scene,
             stage: Stage::Reflection,
         };
@@ -260,7 +260,7 @@ mod tests {
         ] {
             assert_eq!(words.shown(shown, truth), expected);
         }
-        let flat = Words {
+        let flat = DecisionWords {
             stage: Stage::Tetrahedron,
             ..words
         };

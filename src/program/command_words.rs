@@ -11,23 +11,23 @@ use super::error::ProgramError;
 const NAME: usize = 40;
 
 /// A command in words, at least one.
-pub(super) struct Words {
+pub(super) struct CommandWords {
     program: String,
     arguments: Vec<String>,
     name: String,
 }
 
-impl Words {
+impl CommandWords {
     /// Splits `command` as a shell does.
-    pub(super) fn split(command: &str) -> Result<Words, ProgramError> {
+    pub(super) fn split(command: &str) -> Result<CommandWords, ProgramError> {
         let words = shlex::split(command);
         let mut words = words
-            .ok_or_else(|| ProgramError::Words(command.to_owned()))?
+            .ok_or_else(|| ProgramError::CommandWords(command.to_owned()))?
             .into_iter();
         let program = words.next().ok_or(ProgramError::Empty)?;
         let arguments: Vec<String> = words.collect();
         let name = name(&program, &arguments);
-        Ok(Words {
+        Ok(CommandWords {
             program,
             arguments,
             name,
@@ -125,7 +125,7 @@ mod tests {
                 "homework --with a very long list --of a…",
             ),
         ] {
-            assert_eq!(Words::split(command).unwrap().name(), name);
+            assert_eq!(CommandWords::split(command).unwrap().name(), name);
         }
     }
 
@@ -135,11 +135,13 @@ mod tests {
         let script = folder.path().join("a script.py");
         std::fs::write(&script, "").unwrap();
         let shown = script.display();
-        let words = Words::split(&format!("'{shown}' --size '{shown}' nothing")).unwrap();
+        let words = CommandWords::split(&format!("'{shown}' --size '{shown}' nothing")).unwrap();
         assert_eq!(words.files(), [&script, &script].map(PathBuf::clone));
         #[cfg(unix)]
         {
-            let files = Words::split(&format!("sh '{shown}'")).unwrap().files();
+            let files = CommandWords::split(&format!("sh '{shown}'"))
+                .unwrap()
+                .files();
             assert!(files[0].is_absolute() && files[0].ends_with("sh"));
             assert_eq!(files[1..], [script]);
         }
