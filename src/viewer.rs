@@ -37,6 +37,8 @@ mod worker;
 mod wrong;
 #[cfg(all(unix, not(target_vendor = "apple")))]
 mod x11;
+#[cfg(all(unix, not(target_vendor = "apple")))]
+mod x11_window;
 mod zoom;
 
 use std::fmt;

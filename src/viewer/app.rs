@@ -372,7 +372,7 @@ impl App<'_> {
         if self.minimized {
             self.minimized = gl_window.is_minimized();
         }
-        !(self.occluded || self.minimized || gl_window.is_empty())
+        !(self.occluded || self.minimized || gl_window.is_empty()) && gl_window.is_viewable()
     }
 
     /// Polls the display for the state of the window: only now and then, since each time is a round

@@ -31,6 +31,8 @@ use super::layout::{Layout, with_panel};
 use super::overlay::Overlay;
 use super::panel;
 use super::rect::Rect;
+#[cfg(all(unix, not(target_vendor = "apple")))]
+use super::x11_window::X11Window;
 use super::zoom::Zoom;
 use growth::Growth;
 use opengl::{EIGHT_BITS, Failure, config, display, fitting, functions};
@@ -46,6 +48,9 @@ pub(super) struct GlWindow {
     /// `None` only while they are being replaced.
     resources: Option<GlResources>,
     config: Config,
+    /// `None` on another display than X11.
+    #[cfg(all(unix, not(target_vendor = "apple")))]
+    x11: Option<X11Window>,
     window: Window,
     /// The width and height of the surface in pixels; 0 where the window shows none.
     surface: UVec2,
@@ -133,6 +138,8 @@ impl GlWindow {
         let mut gl_window = GlWindow {
             resources: None,
             config,
+            #[cfg(all(unix, not(target_vendor = "apple")))]
+            x11: X11Window::of(&window),
             window,
             surface: UVec2::new(size.width, size.height),
             picture,
@@ -180,6 +187,16 @@ impl GlWindow {
     /// Whether the window is an icon, as far as the display says.
     pub(super) fn is_minimized(&self) -> bool {
         self.window.is_minimized() == Some(true)
+    }
+
+    /// Whether the window lies on the screen, as far as the display says: behind others, perhaps,
+    /// but not on another workspace whose windows are unmapped.
+    pub(super) fn is_viewable(&self) -> bool {
+        #[cfg(all(unix, not(target_vendor = "apple")))]
+        let viewable = self.x11.as_ref().is_none_or(X11Window::is_viewable);
+        #[cfg(not(all(unix, not(target_vendor = "apple"))))]
+        let viewable = true;
+        viewable
     }
 
     /// The window has a new size, in pixels.

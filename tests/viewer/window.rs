@@ -162,12 +162,37 @@ fn a_covered_window_rests_and_comes_back() {
         return;
     };
     session.titled(&["fps"]);
-    let cover = cover(&session);
+    let cover = open_window(&session, 1280, 1024);
     rests(&session);
     let title = session.title();
     session.connection.destroy_window(cover).unwrap();
     session.connection.flush().unwrap();
     wait_for("α to move on", || (session.title() != title).then_some(()));
+}
+
+#[test]
+fn a_window_on_another_workspace_sleeps_and_comes_back() {
+    let Some(session) = Session::start(&["view", "--size", "60"]) else {
+        return;
+    };
+    session.titled(&["fps"]);
+    // A window manager's frame around the window, which it unmaps with its workspace.
+    let frame = open_window(&session, 300, 300);
+    let (connection, window) = (&session.connection, session.window);
+    let reparented = connection.reparent_window(window, frame, 10, 10);
+    reparented.unwrap().check().unwrap();
+    let moves_on = || {
+        let title = session.title();
+        wait_for("α to move on", || (session.title() != title).then_some(()));
+    };
+    for _ in 0..2 {
+        moves_on();
+        connection.unmap_window(frame).unwrap().check().unwrap();
+        rests(&session);
+        session.program.sleeps();
+        connection.map_window(frame).unwrap().check().unwrap();
+    }
+    moves_on();
 }
 
 /// Waits until the animation stands still although it is not paused.
@@ -180,8 +205,8 @@ fn rests(session: &Session) {
     assert!(!session.title().contains("paused"));
 }
 
-/// Puts a window over the whole screen.
-fn cover(session: &Session) -> Window {
+/// Opens a window of this size in the upper left corner of the screen, over all others.
+fn open_window(session: &Session, width: u16, height: u16) -> Window {
     let connection = &session.connection;
     let window = connection.generate_id().unwrap();
     let attributes = CreateWindowAux::new()
@@ -194,8 +219,8 @@ fn cover(session: &Session) -> Window {
             session.root,
             0,
             0,
-            1280,
-            1024,
+            width,
+            height,
             0,
             WindowClass::INPUT_OUTPUT,
             x11rb::COPY_FROM_PARENT,
