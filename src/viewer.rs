@@ -14,6 +14,7 @@ mod content;
 mod error;
 mod frame_rate;
 mod hud;
+mod icon;
 mod information;
 mod key_press;
 mod layout;

@@ -27,6 +27,7 @@ use crate::screen::{Differs, Placement, Screen};
 
 use super::ViewerError;
 use super::canvas::TextBox;
+use super::icon::icon;
 use super::layout::{Layout, with_panel};
 use super::overlay::Overlay;
 use super::panel;
@@ -96,6 +97,7 @@ impl GlWindow {
         let side = monitor.map_or(side, |size| side.min(size.width).min(size.height));
         let attributes = Window::default_attributes()
             .with_title("firsthit")
+            .with_window_icon(icon())
             .with_inner_size(LogicalSize::new(side, side));
         #[cfg(all(unix, not(target_vendor = "apple")))]
         let attributes = named(attributes);

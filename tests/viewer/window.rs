@@ -7,7 +7,7 @@ use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, CreateWindowAux, Window, WindowClass};
 
 use super::WATCH;
-use super::pixels::traced;
+use super::pixels::{letterboxed, traced};
 use super::program::wait_for;
 use super::session::{ESCAPE, LEFT_BUTTON, SPACE, Session, WHEEL_DOWN, WHEEL_UP};
 
@@ -41,6 +41,25 @@ fn a_desktop_knows_the_window_by_the_name_of_the_program() {
     let property = connection.get_property(false, session.window, class, text, 0, 100);
     let value = property.unwrap().reply().unwrap().value;
     assert_eq!(value, b"firsthit\0firsthit\0");
+}
+
+#[test]
+fn a_desktop_gets_a_small_picture_as_the_icon_of_the_window() {
+    let Some(session) = Session::start(&["view", "--stage", "1"]) else {
+        return;
+    };
+    let connection = &session.connection;
+    let name = connection.intern_atom(false, b"_NET_WM_ICON").unwrap();
+    let (name, kind) = (name.reply().unwrap().atom, AtomEnum::CARDINAL);
+    let property = connection.get_property(false, session.window, name, kind, 0, u32::MAX);
+    let property = property.unwrap().reply().unwrap();
+    let numbers: Vec<u32> = property.value32().unwrap().collect();
+    // Width, height, and each pixel as ARGB, rows from the top.
+    assert_eq!(numbers[..2], [64, 64]);
+    let pixels = letterboxed(&traced(64, Stage::Reflection, 0.0), 64, 64).bytes;
+    let expected = pixels.into_iter().map(|[r, g, b]| [0xff, r, g, b]);
+    let expected: Vec<u32> = expected.map(u32::from_be_bytes).collect();
+    assert_eq!(numbers[2..], expected);
 }
 
 #[test]
