@@ -13,6 +13,7 @@ mod comparison;
 mod content;
 mod error;
 mod frame_rate;
+mod front;
 mod hud;
 mod icon;
 mod information;

@@ -9,27 +9,23 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::keyboard::ModifiersState;
 
 use crate::screen::driver_limits;
 use crate::tracer::Tally;
 use crate::{Image, Render, RenderError, Scene, Stage};
 
-use super::clipboard::Clipboard;
 use super::comparison::{self, Comparing};
 use super::content::{Content, Redisplay, STAND_IN};
 use super::frame_rate::FrameRate;
-use super::hud::Hud;
+use super::front::Front;
 use super::information::Times;
 use super::playback::Playback;
-use super::pointer::Pointer;
 use super::renderer::{Renderer, Renderers};
 #[cfg(all(unix, not(target_vendor = "apple")))]
 use super::server::event_loop;
 use super::tracing::{Frame, Pictures, Reply, Traced, Tracing};
 use super::watch::{Change, Watch, Watched};
-use super::window::GlWindow;
-use super::{Counts, Event, Options, ViewerError};
+use super::{Event, Options, ViewerError};
 
 /// How long a redisplay waits for the next picture before it draws the last one again.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -76,20 +72,12 @@ pub(super) fn run(
         watch: watch.map_err(ViewerError::Thread)?,
         failure_of_renderer: None,
         content: Content::default(),
-        gl_window: None,
-        clipboard: None,
-        overdue: false,
+        front: Front::default(),
         next_frame: started,
-        modifiers: ModifiersState::empty(),
-        pointer: Pointer::default(),
-        occluded: false,
-        minimized: false,
         frame_time: Duration::ZERO,
         frame_rate: FrameRate::default(),
         title: String::new(),
-        hud: Hud::default(),
         times: Times::default(),
-        counts: Counts::default(),
         failure: None,
     };
     // While the window opens the first picture is traced.
@@ -128,28 +116,14 @@ struct App<'a> {
     /// A frame of which there is no picture, and why.
     failure_of_renderer: Option<(Frame, String)>,
     content: Content,
-    /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
-    gl_window: Option<GlWindow>,
-    /// `None` without a window.
-    clipboard: Option<Clipboard>,
-    /// The next redisplay does not wait for the next picture: that took too long, or something else
-    /// has changed.
-    overdue: bool,
+    front: Front,
     /// When the next frame of the playing animation is due.
     next_frame: Instant,
-    modifiers: ModifiersState,
-    pointer: Pointer,
-    /// Other windows cover this one.
-    occluded: bool,
-    /// The window is an icon.
-    minimized: bool,
     /// How long the display shows a frame.
     frame_time: Duration,
     frame_rate: FrameRate,
     title: String,
-    hud: Hud,
     times: Times,
-    counts: Counts,
     failure: Option<ViewerError>,
 }
 
@@ -174,7 +148,7 @@ impl App<'_> {
 
     /// Ends the viewer after the last event.
     fn leave(mut self, ended_well: bool) -> Result<(), ViewerError> {
-        self.counts.traces = self.tracing.made();
+        self.front.counts.traces = self.tracing.made();
         for reply in self.tracing.finish() {
             if let Reply::Saved(saved) = reply {
                 (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
@@ -186,7 +160,7 @@ impl App<'_> {
         if !ended_well {
             return Err(ViewerError::Lost);
         }
-        (self.report)(Event::Left(self.counts));
+        (self.report)(Event::Left(self.front.counts));
         Ok(())
     }
 
@@ -236,7 +210,7 @@ impl App<'_> {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
             // The next picture is traced over this one, unless its pixels are looked at.
-            if !self.hud.names_pixels() {
+            if !self.front.hud.names_pixels() {
                 let next = self.wanted();
                 self.content.give_back(&next);
             }
@@ -248,19 +222,20 @@ impl App<'_> {
     /// anything to upload.
     fn upload(&mut self) -> Result<bool, ViewerError> {
         let (Some(gl_window), Some((image, rows))) =
-            (&mut self.gl_window, self.content.to_upload())
+            (&mut self.front.gl_window, self.content.to_upload())
         else {
             return Ok(false);
         };
-        self.times.upload = gl_window.upload(image, rows, self.hud.information)?;
-        self.counts.uploads += 1;
+        self.times.upload = gl_window.upload(image, rows, self.front.hud.information)?;
+        self.front.counts.uploads += 1;
         self.content.uploaded();
         Ok(true)
     }
 
     /// Checks that the driver shows what is uploaded, once in each size of the window.
     fn check_pixels(&mut self) {
-        if let (Some(gl_window), Some(image)) = (&mut self.gl_window, self.content.in_texture())
+        if let (Some(gl_window), Some(image)) =
+            (&mut self.front.gl_window, self.content.in_texture())
             && let Some(differs) = gl_window.check_pixels(image)
         {
             let renderer = gl_window.renderer().to_owned();
@@ -271,19 +246,19 @@ impl App<'_> {
     /// Draws the content, and requests the next picture if there is to be one.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let start = Instant::now();
-        let overdue = std::mem::take(&mut self.overdue);
+        let overdue = std::mem::take(&mut self.front.overdue);
         event_loop.set_control_flow(ControlFlow::Wait);
-        let visible = self.visible();
+        let visible = self.front.visible();
         self.watch.hold(!visible);
         if !visible {
             self.playback.hold();
             self.frame_rate.stop();
-            if self.minimized {
+            if self.front.is_minimized() {
                 event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             }
             return Ok(());
         }
-        if self.counts.draws == 0 && self.content.traced().is_some() {
+        if self.front.counts.draws == 0 && self.content.traced().is_some() {
             // Opening the window was no part of the animation.
             self.playback.count_from(start - self.frame_time);
         }
@@ -305,38 +280,33 @@ impl App<'_> {
             return Ok(());
         }
         if let Some(until) = self
+            .front
             .gl_window
             .as_mut()
             .and_then(|gl_window| gl_window.awaits_size(start))
         {
             // Drawn in the new size at once, instead of in the old one first.
-            self.overdue |= overdue;
+            self.front.overdue |= overdue;
             event_loop.set_control_flow(ControlFlow::WaitUntil(until));
             return Ok(());
         }
-        let change = self.hud.expire(start);
-        let values = self.hud_values();
-        let marks = self.marks(&values);
-        let Some(gl_window) = &mut self.gl_window else {
-            return Ok(());
-        };
+        let change = self.front.hud.expire(start);
         if redisplay == Redisplay::Clear {
             // A renderer that is slow with its first picture is noticed.
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
-            return gl_window.clear();
+            return self.front.clear();
         }
-        let waits = self.hud.information;
-        let window = (gl_window.surface(), gl_window.layout());
-        let text_boxes = self.hud.text_boxes(window, gl_window.cell(), &values);
-        let Some(draw) = gl_window.draw((&marks, text_boxes), waits)? else {
+        let values = self.hud_values();
+        let Some(draw) = self.front.draw(&values, self.front.hud.information)? else {
             self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             return Ok(());
         };
         self.times.draw = draw;
         self.times.display = self.frame_rate.per_second();
-        self.counts.draws += 1;
-        if self.counts.draws == 1 {
+        if self.front.counts.draws == 1
+            && let Some(gl_window) = &self.front.gl_window
+        {
             (self.report)(Event::FirstFrame {
                 after: self.started.elapsed(),
                 renderer: gl_window.renderer().to_owned(),
@@ -361,25 +331,14 @@ impl App<'_> {
     /// Whether a frame that is drawn now is the last one.
     fn is_last(&self) -> bool {
         self.exit_after_frames
-            .is_some_and(|frames| self.counts.draws + 1 >= frames)
-    }
-
-    /// Whether the window can be drawn on and seen.
-    fn visible(&mut self) -> bool {
-        let Some(gl_window) = &self.gl_window else {
-            return false;
-        };
-        if self.minimized {
-            self.minimized = gl_window.is_minimized();
-        }
-        !(self.occluded || self.minimized || gl_window.is_empty()) && gl_window.is_viewable()
+            .is_some_and(|frames| self.front.counts.draws + 1 >= frames)
     }
 
     /// Polls the display for the state of the window: only now and then, since each time is a round
     /// trip.
     fn poll_window(&mut self) {
-        if let Some(gl_window) = &self.gl_window {
-            self.minimized = gl_window.is_minimized();
+        self.front.poll();
+        if let Some(gl_window) = &self.front.gl_window {
             self.frame_time = gl_window.frame_time();
         }
         self.retitle();
@@ -389,7 +348,7 @@ impl App<'_> {
     fn schedule(&mut self, event_loop: &ActiveEventLoop) {
         let last = self
             .exit_after_frames
-            .is_some_and(|frames| self.counts.draws >= frames);
+            .is_some_and(|frames| self.front.counts.draws >= frames);
         if last {
             event_loop.exit();
         } else if !self.waiting() && (self.playing() || self.exit_after_frames.is_some()) {
@@ -402,7 +361,7 @@ impl App<'_> {
     fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
         if Instant::now() < self.next_frame {
             event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
-        } else if let Some(gl_window) = &self.gl_window {
+        } else if let Some(gl_window) = &self.front.gl_window {
             gl_window.window().request_redraw();
         }
     }
@@ -421,14 +380,14 @@ impl App<'_> {
                 }
                 Reply::Saved(saved) => {
                     let event = saved.map_or_else(Event::NotSaved, Event::Saved);
-                    self.hud.say(event.to_string());
+                    self.front.hud.say(event.to_string());
                     (self.report)(event);
-                    self.touch();
+                    self.front.touch();
                 }
                 Reply::Explained(pixel, text) => {
-                    self.hud.inspect(pixel, text.clone());
+                    self.front.hud.inspect(pixel, text.clone());
                     (self.report)(Event::Inspected(text));
-                    self.touch();
+                    self.front.touch();
                 }
                 Reply::Refused(frame, reason) => self.refuse(frame, reason)?,
                 Reply::Failed(error) => return Err(error),
@@ -449,7 +408,7 @@ impl App<'_> {
                 comparison::Reply::Done(compared) => self.content.comparison_came(compared),
                 comparison::Reply::Failed(error) => return Err(error),
             }
-            self.touch();
+            self.front.touch();
         }
         Ok(())
     }
@@ -463,7 +422,7 @@ impl App<'_> {
             }
             // Another kernel has one.
             Renderer::Kernel(_) => {
-                self.hud.say(reason.to_string());
+                self.front.hud.say(reason.to_string());
                 if self.renderers.shown() == &frame.renderer {
                     self.renderers.show_next();
                     self.retitle();
@@ -491,7 +450,7 @@ impl App<'_> {
                 }
             }
         }
-        self.touch();
+        self.front.touch();
         Ok(())
     }
 
@@ -532,17 +491,7 @@ impl App<'_> {
             }
         }
         self.request();
-        self.touch();
-    }
-
-    /// Requests a redisplay at once, for something other than the picture has changed.
-    fn touch(&mut self) {
-        let open = self.hud.has_panel() || self.content.shows_errors();
-        if let Some(gl_window) = &mut self.gl_window {
-            gl_window.show_panel(open);
-        }
-        self.overdue = true;
-        self.ask_for_redraw();
+        self.front.touch();
     }
 
     /// Requests the errors of the picture, if they are to be shown.
@@ -552,15 +501,9 @@ impl App<'_> {
         }
     }
 
-    fn ask_for_redraw(&self) {
-        if let Some(gl_window) = &self.gl_window {
-            gl_window.window().request_redraw();
-        }
-    }
-
     /// Writes stage, kernel, α and frames a second into the title, where they changed.
     fn retitle(&mut self) {
-        let Some(gl_window) = &self.gl_window else {
+        let Some(gl_window) = &self.front.gl_window else {
             return;
         };
         let tail = match (self.stage, self.frame_rate.per_second()) {
@@ -581,11 +524,7 @@ impl App<'_> {
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
-        let gl_window = GlWindow::open(event_loop, self.size)?;
-        gl_window.window().request_redraw();
-        self.frame_time = gl_window.frame_time();
-        self.clipboard = Some(Clipboard::beside(gl_window.window()));
-        self.gl_window = Some(gl_window);
+        self.frame_time = self.front.open(event_loop, self.size)?.frame_time();
         (self.report)(Event::Opened);
         self.content.lose_texture();
         self.retitle();

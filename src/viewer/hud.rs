@@ -27,6 +27,8 @@ const VALUES: usize = 13;
 pub(super) struct Hud {
     pub(super) menu: Option<Menu>,
     pub(super) information: bool,
+    /// Errors are shown, and what they are beside them.
+    pub(super) errors: bool,
     text: PanelText,
     scroll: Scroll,
     /// The pixel under the pointer is named until then, for the pointer moved.
@@ -66,9 +68,9 @@ pub(super) struct HudValues {
 }
 
 impl Hud {
-    /// Whether anything stands beside the picture, apart from the errors.
+    /// Whether anything stands beside the picture.
     pub(super) fn has_panel(&self) -> bool {
-        self.information || self.text != PanelText::Nothing
+        self.information || self.errors || self.text != PanelText::Nothing
     }
 
     /// Whether the pixel under the pointer is named.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use winit::event_loop::ActiveEventLoop;
+use glam::UVec2;
 
 use super::App;
 use crate::Stage;
@@ -16,7 +16,7 @@ const NUDGE: f64 = 0.05;
 const FASTER: f64 = 1.25;
 
 impl App<'_> {
-    pub(super) fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+    pub(super) fn act(&mut self, action: Action) {
         match action {
             Action::Stage(stage) if stage == self.stage => {}
             Action::Stage(Stage::Animation) => self.stage = Stage::Animation,
@@ -44,42 +44,28 @@ impl App<'_> {
             Action::Errors => self.toggle_errors(),
             Action::NextKernel => self.renderers.show_next(),
             Action::Information => {
-                self.hud.information = !self.hud.information;
-                self.touch();
+                self.front.hud.information = !self.front.hud.information;
+                self.front.touch();
             }
-            Action::Copy => self.copy(),
-            Action::Menu => {
-                let place = self.pointer.place();
-                self.toggle_menu(place);
-            }
-            Action::Help => {
-                self.hud.toggle_keys();
-                self.touch();
-            }
-            Action::Fit => {
-                if let Some(gl_window) = &mut self.gl_window {
-                    gl_window.fit();
-                }
-                self.touch();
-            }
-            Action::FullScreen => {
-                if let Some(gl_window) = &self.gl_window {
-                    gl_window.toggle_full_screen();
-                }
-            }
-            Action::Leave => event_loop.exit(),
+            // Those of the window itself.
+            Action::Copy
+            | Action::Menu
+            | Action::Help
+            | Action::Fit
+            | Action::FullScreen
+            | Action::Leave => return,
         }
         if !self.playing() {
             self.frame_rate.stop();
         }
         self.retitle();
         if self.playing() {
-            self.ask_for_redraw();
+            self.front.ask_for_redraw();
         } else {
             self.request();
             // That a renderer is slow is written over the last picture.
             if self.waits_for_renderer() {
-                self.ask_for_redraw();
+                self.front.ask_for_redraw();
             }
         }
     }
@@ -87,16 +73,25 @@ impl App<'_> {
     /// Shows the errors of the picture, or the picture again.
     fn toggle_errors(&mut self) {
         self.content.toggle_errors(Instant::now());
+        self.front.hud.errors = self.content.shows_errors();
         // Errors that are not shown are not kept.
         self.comparing.forget();
         self.compare();
-        self.touch();
+        self.front.touch();
     }
 
     /// Pauses the animation if it is on.
     pub(super) fn stop(&mut self) {
         if self.stage == Stage::Animation {
             self.playback.pause();
+        }
+    }
+
+    /// Has a pixel of the picture, column and row, worked through.
+    pub(super) fn explain(&self, pixel: UVec2) {
+        if let Some((traced, image)) = self.content.shown() {
+            let image = image.cloned();
+            self.tracing.explain(traced.frame.clone(), pixel, image);
         }
     }
 
@@ -107,20 +102,5 @@ impl App<'_> {
             _ => self.wanted(),
         };
         self.tracing.save(frame, format);
-    }
-
-    /// Copies the text of the pixel that was clicked on.
-    fn copy(&mut self) {
-        let (Some((_, text)), Some(clipboard)) = (self.hud.inspected(), &mut self.clipboard) else {
-            self.hud
-                .say("nothing to copy: click on a pixel first".to_owned());
-            return self.touch();
-        };
-        let said = match clipboard.copy(text.to_owned()) {
-            Ok(()) => "copied the text of the clicked pixel".to_owned(),
-            Err(error) => format!("not copied: {error}"),
-        };
-        self.hud.say(said);
-        self.touch();
     }
 }
