@@ -34,7 +34,7 @@ use bytemuck::cast_slice;
 use glam::{I64Vec2, UVec2};
 use glow::HasContext as _;
 
-use crate::image::{Image, ImageError, MAX_SIZE};
+use crate::image::{ImageError, MAX_SIZE, Raster};
 #[cfg(feature = "program")]
 pub use check::Differs;
 #[cfg(feature = "program")]
@@ -72,16 +72,17 @@ pub struct Screen {
     gl: Rc<glow::Context>,
     program: Program,
     origin: Option<glow::UniformLocation>,
-    side: Option<glow::UniformLocation>,
+    extent: Option<glow::UniformLocation>,
     texture: glow::Texture,
     /// Empty: a core context draws nothing without one.
     vertex_array: glow::VertexArray,
-    size: u32,
+    /// The width and height of the pictures.
+    size: UVec2,
 }
 
 impl Screen {
-    /// A screen for pictures of `size` × `size` pixels in the OpenGL 3.3 core context that is
-    /// current and whose functions are `gl`.
+    /// A screen for pictures of `size`, width and height in pixels, in the OpenGL 3.3 core context
+    /// that is current and whose functions are `gl`.
     ///
     /// # Errors
     /// [`ScreenError::Image`] where there is no picture of that size,
@@ -91,13 +92,13 @@ impl Screen {
     /// # Safety
     /// `gl` holds the functions of the context that is current on this thread. The same context is
     /// current again whenever a method of the screen is called, and when the screen is dropped.
-    pub unsafe fn new(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
-        if !(1..=MAX_SIZE).contains(&size) {
-            return Err(ImageError::Size(size, size).into());
+    pub unsafe fn new(gl: Rc<glow::Context>, size: UVec2) -> Result<Screen, ScreenError> {
+        if size.min_element() == 0 || size.max_element() > MAX_SIZE {
+            return Err(ImageError::Size(size.x, size.y).into());
         }
         // SAFETY: the context is current, as the caller has promised.
         let max = unsafe { gl.get_parameter_i32(glow::MAX_TEXTURE_SIZE) }.unsigned_abs();
-        if size > max {
+        if size.max_element() > max {
             return Err(ScreenError::TextureTooLarge { size, max });
         }
         let program = Program::new(gl.clone(), include_str!("screen/picture.frag"))?;
@@ -110,7 +111,7 @@ impl Screen {
         let screen = Screen {
             gl,
             origin: program.uniform("origin"),
-            side: program.uniform("side"),
+            extent: program.uniform("extent"),
             program,
             texture,
             vertex_array,
@@ -131,8 +132,8 @@ impl Screen {
                 glow::TEXTURE_2D,
                 0,
                 glow::RGB32F as i32,
-                self.size as i32,
-                self.size as i32,
+                self.size.x as i32,
+                self.size.y as i32,
                 0,
                 glow::RGB,
                 glow::FLOAT,
@@ -150,8 +151,8 @@ impl Screen {
     /// # Errors
     /// [`ScreenError::Size`] unless `image` has the size of the screen, [`ScreenError::Memory`] and
     /// [`ScreenError::Refused`] where the driver cannot take it.
-    pub fn upload(&mut self, image: &Image) -> Result<(), ScreenError> {
-        self.upload_rows(image, 0..self.size)
+    pub fn upload(&mut self, image: &Raster) -> Result<(), ScreenError> {
+        self.upload_rows(image, 0..self.size.y)
     }
 
     /// Replaces some rows of texels, counted from the bottom, by those of `image`: after
@@ -160,24 +161,25 @@ impl Screen {
     ///
     /// # Errors
     /// As [`Screen::upload`].
-    pub fn upload_rows(&mut self, image: &Image, rows: Range<u32>) -> Result<(), ScreenError> {
-        if image.size() != self.size {
+    pub fn upload_rows(&mut self, image: &Raster, rows: Range<u32>) -> Result<(), ScreenError> {
+        let size = UVec2::new(image.width(), image.height());
+        if size != self.size {
             return Err(ScreenError::Size {
-                image: image.size(),
+                image: size,
                 screen: self.size,
             });
         }
-        let rows = rows.start..rows.end.min(self.size);
+        let rows = rows.start..rows.end.min(self.size.y);
         if rows.is_empty() {
             return Ok(());
         }
-        let width = 3 * self.size as usize;
+        let width = 3 * self.size.x as usize;
         let samples = &image.samples()[rows.start as usize * width..rows.end as usize * width];
         let gl = &self.gl;
         set_unpacking(gl);
         // SAFETY: the context is current, and the texture has these rows. With these pixel-store
-        // parameters and no buffer bound, the driver reads exactly as many rows of size × 3
-        // floats, and so many the samples are.
+        // parameters and no buffer bound, the driver reads exactly as many rows of
+        // width × 3 floats, and so many the samples are.
         unsafe {
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.tex_sub_image_2d(
@@ -185,7 +187,7 @@ impl Screen {
                 0,
                 0,
                 rows.start as i32,
-                self.size as i32,
+                self.size.x as i32,
                 rows.len() as i32,
                 glow::RGB,
                 glow::FLOAT,
@@ -196,12 +198,12 @@ impl Screen {
     }
 
     /// Clears the bound framebuffer, `surface` wide and high in pixels, and draws the picture into
-    /// `placement` by nearest neighbour: of the E pixels along a side, pixel p shows the
-    /// picture's ⌊(p + ½) N / E⌋, exactly, as long as N E is less than 2³¹.
+    /// `placement` by nearest neighbour: of the E pixels along a side on which the picture has N,
+    /// pixel p shows the picture's ⌊(p + ½) N / E⌋, exactly, as long as N E is less than 2³¹.
     pub fn draw(&self, surface: UVec2, placement: Placement) {
         let gl = &self.gl;
         let origin = placement.origin.as_i64vec2();
-        let corner = (origin + i64::from(placement.side)).min(surface.as_i64vec2());
+        let corner = (origin + placement.size.as_i64vec2()).min(surface.as_i64vec2());
         let start = origin.max(I64Vec2::ZERO);
         let visible = (corner - start).max(I64Vec2::ZERO).as_ivec2();
         let start = start.as_ivec2();
@@ -224,7 +226,7 @@ impl Screen {
             gl.viewport(start.x, start.y, visible.x, visible.y);
             gl.use_program(Some(self.program.name));
             gl.uniform_2_i32(self.origin.as_ref(), placement.origin.x, placement.origin.y);
-            gl.uniform_1_u32(self.side.as_ref(), placement.side);
+            gl.uniform_2_u32(self.extent.as_ref(), placement.size.x, placement.size.y);
             gl.active_texture(glow::TEXTURE0);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.bind_vertex_array(Some(self.vertex_array));
@@ -285,8 +287,8 @@ fn set_unpacking(gl: &glow::Context) {
 }
 
 /// The driver's oldest error since the last check, if any, as what kept it from doing `what` for a
-/// picture of `size` × `size` pixels.
-fn check(gl: &glow::Context, what: &'static str, size: u32) -> Result<(), ScreenError> {
+/// picture of `size`, width and height in pixels.
+fn check(gl: &glow::Context, what: &'static str, size: UVec2) -> Result<(), ScreenError> {
     // SAFETY: the context is current.
     match unsafe { gl.get_error() } {
         glow::NO_ERROR => Ok(()),

@@ -5,6 +5,7 @@ use std::ffi::c_void;
 
 use firsthit::screen::{Backend, Offscreen, ScreenError};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use glam::UVec2;
 use glutin::api::egl::device::Device;
 use glutin::api::egl::display::Display;
 
@@ -289,7 +290,9 @@ fn a_picture_of_another_size_is_refused_and_the_next_one_is_not() {
         };
         for size in [4, 6] {
             match offscreen.show(&image(size, scattered(0))) {
-                Err(ScreenError::Size { image, screen: 5 }) => assert_eq!(image, size),
+                Err(ScreenError::Size { image, screen }) => {
+                    assert_eq!((image, screen), (UVec2::splat(size), UVec2::splat(5)));
+                }
                 other => panic!("{}: {other:?}", backend.name()),
             }
         }

@@ -5,6 +5,7 @@ use std::ffi::{CStr, c_void};
 use std::rc::Rc;
 
 use firsthit::Image;
+use firsthit::image::Raster;
 use firsthit::screen::{Backend, Offscreen, Placement, Screen, ScreenError};
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
@@ -127,9 +128,9 @@ impl Gl {
 
 /// What an 8-bit framebuffer makes of a sample.
 /// A screen in the context of the [`Gl`] whose functions these are.
-fn screen(gl: Rc<glow::Context>, size: u32) -> Result<Screen, ScreenError> {
+fn screen(gl: Rc<glow::Context>, width: u32, height: u32) -> Result<Screen, ScreenError> {
     // SAFETY: these tests keep that context current as long as they have a screen in it.
-    unsafe { Screen::new(gl, size) }
+    unsafe { Screen::new(gl, UVec2::new(width, height)) }
 }
 
 fn byte(sample: f32) -> u8 {
@@ -137,38 +138,45 @@ fn byte(sample: f32) -> u8 {
 }
 
 /// A picture whose pixels say where they are: column, row, 0.5.
-fn coordinates(size: u32) -> Image {
-    let mut image = Image::new(size).unwrap();
+fn coordinates(width: u32, height: u32) -> Raster {
+    let mut image = Raster::new(width, height).unwrap();
     for (i, pixel) in image.samples_mut().chunks_mut(3).enumerate() {
-        let (column, row) = (i as u32 % size, i as u32 / size);
+        let (column, row) = (i as u32 % width, i as u32 / width);
         pixel.copy_from_slice(&[column as f32, row as f32, 0.5]);
     }
     image
 }
 
-/// Draws [`coordinates`] into `placement` of a float framebuffer and compares every pixel of it
-/// with the definition.
+/// A square of `side` pixels.
+fn square(origin: IVec2, side: u32) -> Placement {
+    let size = UVec2::splat(side);
+    Placement { origin, size }
+}
+
+/// Draws [`coordinates`] of `picture`, width and height, into `placement` of a float framebuffer
+/// and compares every pixel of it with the definition.
 #[track_caller]
-fn assert_drawn(gl: &Gl, screen: &Screen, size: u32, surface: UVec2, placement: Placement) {
+fn assert_drawn(gl: &Gl, screen: &Screen, picture: UVec2, surface: UVec2, placement: Placement) {
     gl.bind_framebuffer(glow::RGBA32F, surface);
     screen.draw(surface, placement);
-    let texel = |pixel: u32, origin: i32| {
-        let side = i64::from(placement.side);
+    let texel = |pixel: u32, origin: i32, side: u32, size: u32| {
+        let side = i64::from(side);
         let offset = i64::from(pixel) - i64::from(origin);
         let inside = (0..side).contains(&offset);
         inside.then(|| ((2 * offset + 1) * i64::from(size) / (2 * side)) as f32)
     };
     for (i, drawn) in gl.read_floats(surface).chunks(4).enumerate() {
         let (x, y) = (i as u32 % surface.x, i as u32 / surface.x);
-        let column = texel(x, placement.origin.x);
-        let row = texel(y, placement.origin.y);
+        let Placement { origin, size } = placement;
+        let column = texel(x, origin.x, size.x, picture.x);
+        let row = texel(y, origin.y, size.y, picture.y);
         let expected = match (column, row) {
             (Some(column), Some(row)) => [column, row, 0.5, 1.0],
             _ => [0.0, 0.0, 1.0, 1.0],
         };
         assert_eq!(
             drawn, expected,
-            "N = {size}, {placement:?}, ({x}, {y}) of {surface}"
+            "{picture}, {placement:?}, ({x}, {y}) of {surface}"
         );
     }
 }
@@ -177,13 +185,19 @@ fn assert_drawn(gl: &Gl, screen: &Screen, size: u32, surface: UVec2, placement: 
 fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
     let Some(gl) = Gl::open() else { return };
     for size in [1, 2, 7, 10, 64] {
-        let mut screen = screen(gl.gl.clone(), size).unwrap();
-        screen.upload(&coordinates(size)).unwrap();
+        let mut screen = screen(gl.gl.clone(), size, size).unwrap();
+        screen.upload(&coordinates(size, size)).unwrap();
         // Whole multiples with and without a margin, and smaller ones, among them those where every
         // centre lies between two texels.
         for side in 1..=3 * size + 2 {
             for surface in [UVec2::new(side, side), UVec2::new(side + 5, side + 2)] {
-                assert_drawn(&gl, &screen, size, surface, Placement::fit(surface, size));
+                assert_drawn(
+                    &gl,
+                    &screen,
+                    UVec2::splat(size),
+                    surface,
+                    Placement::fit(surface, UVec2::splat(size)),
+                );
             }
         }
         // Beyond the edges, or not there at all.
@@ -199,7 +213,56 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
             (i32::MAX, i32::MAX, 9),
         ] {
             let origin = IVec2::new(x, y);
-            assert_drawn(&gl, &screen, size, surface, Placement { origin, side });
+            assert_drawn(
+                &gl,
+                &screen,
+                UVec2::splat(size),
+                surface,
+                square(origin, side),
+            );
+        }
+    }
+}
+
+#[test]
+fn pictures_of_any_width_and_height_are_drawn_pixel_by_pixel() {
+    let Some(gl) = Gl::open() else { return };
+    for picture in [
+        UVec2::new(7, 3),
+        UVec2::new(3, 10),
+        UVec2::new(1, 64),
+        UVec2::new(33, 32),
+    ] {
+        let mut screen = screen(gl.gl.clone(), picture.x, picture.y).unwrap();
+        screen.upload(&coordinates(picture.x, picture.y)).unwrap();
+        for side in 1..=3 * picture.max_element() + 2 {
+            for surface in [UVec2::splat(side), UVec2::new(side + 5, side.div_ceil(2))] {
+                let placement = Placement::fit(surface, picture);
+                assert_drawn(&gl, &screen, picture, surface, placement);
+            }
+        }
+        // Beyond the edges, and not in the picture's aspect.
+        let surface = UVec2::new(40, 30);
+        for (origin, size) in [
+            (IVec2::new(-13, -7), UVec2::new(100, 20)),
+            (IVec2::new(25, -20), UVec2::new(9, 64)),
+        ] {
+            assert_drawn(&gl, &screen, picture, surface, Placement { origin, size });
+        }
+        // Some rows of it.
+        let mut other = coordinates(picture.x, picture.y);
+        other.samples_mut().fill(0.25);
+        screen.upload_rows(&other, 1..2).unwrap();
+        gl.bind_framebuffer(glow::RGBA32F, picture);
+        screen.draw(picture, Placement::fit(picture, picture));
+        let drawn = gl.read_floats(picture);
+        for (row, samples) in (0_u32..).zip(drawn.chunks(4 * picture.x as usize)) {
+            let expected = if row == 1 {
+                [0.25, 0.25]
+            } else {
+                [0.0, row as f32]
+            };
+            assert_eq!(samples[..2], expected, "{picture}");
         }
     }
 }
@@ -208,14 +271,20 @@ fn every_pixel_is_its_nearest_neighbour_and_the_rest_is_clear() {
 fn texels_are_exact_where_floats_no_longer_are() {
     let Some(gl) = Gl::open() else { return };
     let (size, side) = (255, 8_400_000);
-    let mut screen = screen(gl.gl.clone(), size).unwrap();
-    screen.upload(&coordinates(size)).unwrap();
+    let mut screen = screen(gl.gl.clone(), size, size).unwrap();
+    screen.upload(&coordinates(size, size)).unwrap();
     // Around the first pixel of each texel: a 32-bit float cannot tell it from its neighbours.
     for texel in 1..size {
         let first = (side / size * texel) as i32;
         let surface = UVec2::splat(32);
         let origin = IVec2::splat(8 - first);
-        assert_drawn(&gl, &screen, size, surface, Placement { origin, side });
+        assert_drawn(
+            &gl,
+            &screen,
+            UVec2::splat(size),
+            surface,
+            square(origin, side),
+        );
     }
 }
 
@@ -241,9 +310,9 @@ fn eight_bits_are_the_nearest_byte_ties_to_even() {
     image.samples_mut()[..samples.len()].copy_from_slice(&samples);
     let surface = UVec2::splat(size);
     gl.bind_framebuffer(glow::RGBA8, surface);
-    let mut screen = screen(gl.gl.clone(), size).unwrap();
+    let mut screen = screen(gl.gl.clone(), size, size).unwrap();
     screen.upload(&image).unwrap();
-    screen.draw(surface, Placement::fit(surface, size));
+    screen.draw(surface, Placement::fit(surface, UVec2::splat(size)));
     let drawn = gl.read_bytes(surface);
     for (drawn, pixel) in drawn.chunks(4).zip(image.samples().chunks(3)) {
         let expected = [byte(pixel[0]), byte(pixel[1]), byte(pixel[2]), 255];
@@ -317,7 +386,7 @@ fn what_another_painter_leaves_behind_does_no_harm() {
     let Some(gl) = Gl::open() else { return };
     let size = 7;
     let surface = UVec2::new(9, 8);
-    let placement = Placement::fit(surface, size);
+    let placement = Placement::fit(surface, UVec2::splat(size));
     // Grey in between black and white is what sRGB encoding changes most.
     let mut image = Image::new(size).unwrap();
     for (i, sample) in image.samples_mut().iter_mut().enumerate() {
@@ -354,7 +423,7 @@ fn what_another_painter_leaves_behind_does_no_harm() {
             // A disturbance before the screen is made, between upload and draw, and between two
             // draws.
             disturb(&gl.gl, what);
-            let mut screen = screen(gl.gl.clone(), size).unwrap();
+            let mut screen = screen(gl.gl.clone(), size, size).unwrap();
             disturb(&gl.gl, what);
             screen.upload(&image).unwrap();
             for _ in 0..2 {
@@ -376,35 +445,51 @@ fn an_offscreen_that_ends_takes_nothing_of_another_context_along() {
     let Some(gl) = Gl::open() else { return };
     let offscreen = Offscreen::open(Backend::Egl, 5).unwrap();
     gl.context.make_current_surfaceless().unwrap();
-    let mut screen = screen(gl.gl.clone(), 5).unwrap();
-    screen.upload(&coordinates(5)).unwrap();
+    let mut screen = screen(gl.gl.clone(), 5, 5).unwrap();
+    screen.upload(&coordinates(5, 5)).unwrap();
     drop(offscreen);
     gl.context.make_current_surfaceless().unwrap();
     let surface = UVec2::splat(5);
-    assert_drawn(&gl, &screen, 5, surface, Placement::fit(surface, 5));
+    assert_drawn(
+        &gl,
+        &screen,
+        UVec2::splat(5),
+        surface,
+        Placement::fit(surface, UVec2::splat(5)),
+    );
 }
 
 #[test]
 fn a_picture_of_another_size_is_refused_and_the_old_one_stays() {
     let Some(gl) = Gl::open() else { return };
-    let mut screen = screen(gl.gl.clone(), 5).unwrap();
-    screen.upload(&coordinates(5)).unwrap();
-    for size in [4, 6] {
-        match screen.upload(&coordinates(size)) {
-            Err(ScreenError::Size { image, screen: 5 }) => assert_eq!(image, size),
+    let mut screen = screen(gl.gl.clone(), 5, 5).unwrap();
+    screen.upload(&coordinates(5, 5)).unwrap();
+    for size in [[4, 4], [6, 6], [5, 4], [6, 5]] {
+        match screen.upload(&coordinates(size[0], size[1])) {
+            Err(ScreenError::Size { image, screen }) => {
+                assert_eq!((image, screen), (size.into(), UVec2::splat(5)));
+            }
             other => panic!("{other:?}"),
         }
     }
     let surface = UVec2::splat(5);
-    assert_drawn(&gl, &screen, 5, surface, Placement::fit(surface, 5));
+    assert_drawn(
+        &gl,
+        &screen,
+        UVec2::splat(5),
+        surface,
+        Placement::fit(surface, UVec2::splat(5)),
+    );
 }
 
 #[test]
 fn a_size_that_no_picture_has_is_refused() {
     let Some(gl) = Gl::open() else { return };
     for size in [0, 16_385, u32::MAX] {
-        let error = screen(gl.gl.clone(), size).err().unwrap();
-        assert!(matches!(error, ScreenError::Image(_)), "{error}");
+        for [width, height] in [[size, size], [5, size], [size, 5]] {
+            let error = screen(gl.gl.clone(), width, height).err().unwrap();
+            assert!(matches!(error, ScreenError::Image(_)), "{error}");
+        }
     }
 }
 
@@ -428,12 +513,14 @@ fn a_small_drivers_largest_texture_is_respected() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    assert!(screen(gl.gl.clone(), 64).is_ok());
-    let error = screen(gl.gl.clone(), 65).err().unwrap();
-    assert!(
-        matches!(error, ScreenError::TextureTooLarge { size: 65, max: 64 }),
-        "{error}"
-    );
+    assert!(screen(gl.gl.clone(), 64, 64).is_ok());
+    for [width, height] in [[65, 65], [65, 5], [5, 65]] {
+        let error = screen(gl.gl.clone(), width, height).err().unwrap();
+        let ScreenError::TextureTooLarge { size, max: 64 } = error else {
+            panic!("{error}");
+        };
+        assert_eq!(size, UVec2::new(width, height));
+    }
 }
 
 #[test]
@@ -448,8 +535,11 @@ fn a_driver_without_memory_is_reported() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    let error = screen(gl.gl.clone(), 64).err().unwrap();
-    assert!(matches!(error, ScreenError::Memory { size: 64 }), "{error}");
+    let error = screen(gl.gl.clone(), 64, 64).err().unwrap();
+    assert!(
+        matches!(error, ScreenError::Memory { size } if size == UVec2::splat(64)),
+        "{error}"
+    );
 }
 
 #[test]
@@ -484,7 +574,7 @@ fn a_driver_that_does_not_understand_the_shaders_is_quoted_in_one_line() {
         _ => real,
     });
     let Some(gl) = replaced else { return };
-    let error = screen(gl.gl.clone(), 64).err().unwrap().to_string();
+    let error = screen(gl.gl.clone(), 64, 64).err().unwrap().to_string();
     let quoted = "the vertex shader (0:1(1): error: what? 0:2(1): error: what now?)";
     assert!(error.contains(quoted), "{error}");
 }

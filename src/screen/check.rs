@@ -4,7 +4,7 @@ use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
 use super::{Placement, Screen};
-use crate::image::{Image, display_byte};
+use crate::image::{Raster, display_byte};
 use crate::memory;
 
 /// The most pixels of a framebuffer that are compared: to compare four times as many would slow
@@ -29,7 +29,7 @@ impl Screen {
         &self,
         surface: UVec2,
         placement: Placement,
-        image: &Image,
+        image: &Raster,
     ) -> Option<Differs> {
         let size = UVec2::new(surface.x, surface.y.min(MAX_PIXELS / surface.x.max(1)));
         let mut bytes = Vec::new();
@@ -51,6 +51,7 @@ impl Screen {
                 glow::PixelPackData::Slice(Some(&mut bytes)),
             );
         }
+        let picture = UVec2::new(image.width(), image.height());
         let rows = bytes.chunks_exact(size.x.max(1) as usize * 4);
         rows.zip(0..)
             .flat_map(|(row, y)| {
@@ -58,7 +59,7 @@ impl Screen {
                     .zip((0..).map(move |x| IVec2::new(x, y)))
             })
             .find_map(|(shown, place)| {
-                let pixel = placement.pixel_at(place, image.size())?;
+                let pixel = placement.pixel_at(place, picture)?;
                 let drawn = image.pixel(pixel.x, pixel.y)?.map(display_byte);
                 let shown = [shown[0], shown[1], shown[2]];
                 (shown != drawn).then_some(Differs {

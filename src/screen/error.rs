@@ -1,5 +1,7 @@
 //! What can keep a picture from the screen.
 
+use glam::UVec2;
+
 use crate::image::ImageError;
 
 /// A screen that cannot be made or used. Each message is one line.
@@ -37,34 +39,37 @@ pub enum ScreenError {
     /// There is no picture of such a size, or no memory for the one that is read back.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// N is more than the driver's largest texture.
+    /// The picture is larger than the driver's largest texture.
     #[error(
-        "a picture of {size} × {size} pixels exceeds this OpenGL driver's largest texture, {max} × {max}: choose a smaller size, or capture with `--through none`"
+        "a picture of {} × {} pixels exceeds this OpenGL driver's largest texture, {max} × {max}: choose a smaller size, or capture with `--through none`",
+        size.x, size.y
     )]
     TextureTooLarge {
-        /// N, the picture's pixels along a side.
-        size: u32,
+        /// The picture's width and height in pixels.
+        size: UVec2,
         /// The driver's `GL_MAX_TEXTURE_SIZE`.
         max: u32,
     },
     /// The driver says that it is out of memory; Mesa's software renderer also says so of a texture
     /// beyond a fixed number of bytes.
     #[error(
-        "this OpenGL driver has no room for a picture of {size} × {size} pixels: choose a smaller size, or capture with `--through none`"
+        "this OpenGL driver has no room for a picture of {} × {} pixels: choose a smaller size, or capture with `--through none`",
+        size.x, size.y
     )]
     Memory {
-        /// N, the picture's pixels along a side.
-        size: u32,
+        /// The picture's width and height in pixels.
+        size: UVec2,
     },
     /// The picture is not of the size that the screen was made for.
     #[error(
-        "a picture of {image} × {image} pixels does not fit a screen made for {screen} × {screen}: make a screen of the picture's size"
+        "a picture of {} × {} pixels does not fit a screen made for {} × {}: make a screen of the picture's size",
+        image.x, image.y, screen.x, screen.y
     )]
     Size {
-        /// The picture's pixels along a side.
-        image: u32,
+        /// The picture's width and height in pixels.
+        image: UVec2,
         /// The screen's.
-        screen: u32,
+        screen: UVec2,
     },
     /// What may be mapped is limited (`ulimit -v`), and a driver would crash for want of it.
     #[error(
@@ -137,10 +142,12 @@ mod tests {
                 packages: "libx1 libx2",
             },
             ScreenError::TextureTooLarge {
-                size: 9000,
+                size: UVec2::splat(9000),
                 max: 8192,
             },
-            ScreenError::Memory { size: 9000 },
+            ScreenError::Memory {
+                size: UVec2::new(9000, 7),
+            },
             ScreenError::refused("the shader", "line 1:\n  no\r\n\tline 2: no\n"),
         ];
         for error in errors {

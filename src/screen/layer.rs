@@ -77,7 +77,7 @@ impl Layer {
             // One level: the texture is complete, whatever filter is set.
             gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, 0);
         }
-        check(gl, "to take text as a texture", size.max_element())?;
+        check(gl, "to take text as a texture", size)?;
         self.size = size;
         Ok(())
     }

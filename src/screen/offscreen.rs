@@ -81,7 +81,7 @@ impl Offscreen {
         let gl = Rc::new(context.functions()?);
         // SAFETY: the context is current, and made current again before the screen is used or
         // dropped.
-        let screen = unsafe { Screen::new(gl.clone(), size) }?;
+        let screen = unsafe { Screen::new(gl.clone(), UVec2::splat(size)) }?;
         let rows = size.min(MAX_PIXELS / size);
         let framebuffer = Framebuffer::new(gl, UVec2::new(size, rows), glow::RGBA32F)?;
         Ok((screen, framebuffer))
@@ -181,7 +181,7 @@ impl Framebuffer {
             );
             gl.check_framebuffer_status(glow::FRAMEBUFFER)
         };
-        check(gl, what, self.size.x)?;
+        check(gl, what, UVec2::splat(self.size.x))?;
         if status != glow::FRAMEBUFFER_COMPLETE {
             let reason = format!("framebuffer status {status:#06x}");
             return Err(ScreenError::refused(what, &reason));
@@ -205,7 +205,7 @@ impl Framebuffer {
         let band = self.size.y as usize * size as usize * 3;
         let mut placement = Placement {
             origin: IVec2::ZERO,
-            side: size,
+            size: UVec2::splat(size),
         };
         for samples in image.samples_mut().chunks_mut(band) {
             let rows = samples.len() / (size as usize * 3);
@@ -227,7 +227,11 @@ impl Framebuffer {
             }
             placement.origin.y -= self.size.y as i32;
         }
-        check(gl, "to draw the picture and read it back", size)?;
+        check(
+            gl,
+            "to draw the picture and read it back",
+            UVec2::splat(size),
+        )?;
         Ok(image)
     }
 }

@@ -162,9 +162,12 @@ impl TimedScreen {
     ) -> Result<(Framebuffer, Renderer, Rc<glow::Context>), ScreenError> {
         let gl = Rc::new(context.functions()?);
         let renderer = match method {
-            // SAFETY: the context is current, and made current again before the screen is used or
-            // dropped.
-            DrawMethod::Texture => Renderer::Texture(unsafe { Screen::new(gl.clone(), size) }?),
+            DrawMethod::Texture => {
+                let size = UVec2::splat(size);
+                // SAFETY: the context is current, and made current again before the screen is used
+                // or dropped.
+                Renderer::Texture(unsafe { Screen::new(gl.clone(), size) }?)
+            }
             DrawMethod::DrawPixels => Renderer::DrawPixels(DrawPixels::load(context)?),
         };
         let framebuffer = Framebuffer::new(gl.clone(), UVec2::splat(size), glow::RGBA8)?;
@@ -186,8 +189,8 @@ impl TimedScreen {
     fn steps(&mut self, image: &Image, rows: Range<u32>) -> Result<Cost, ScreenError> {
         if image.size() != self.size {
             return Err(ScreenError::Size {
-                image: image.size(),
-                screen: self.size,
+                image: UVec2::splat(image.size()),
+                screen: UVec2::splat(self.size),
             });
         }
         self.framebuffer.bind();
@@ -202,7 +205,7 @@ impl TimedScreen {
                 UVec2::splat(self.size),
                 Placement {
                     origin: IVec2::ZERO,
-                    side: self.size,
+                    size: UVec2::splat(self.size),
                 },
             ),
             Renderer::DrawPixels(functions) => functions.draw(&self.gl, image),
@@ -211,7 +214,8 @@ impl TimedScreen {
         let drawn = Instant::now();
         self.read_back()?;
         let read = Instant::now();
-        check(&self.gl, "to draw the picture and read it back", self.size)?;
+        let size = UVec2::splat(self.size);
+        check(&self.gl, "to draw the picture and read it back", size)?;
         let upload = match self.renderer {
             Renderer::Texture(_) => uploaded - start,
             Renderer::DrawPixels(_) => Duration::ZERO,
@@ -231,8 +235,9 @@ impl TimedScreen {
     fn read_back(&mut self) -> Result<(), ScreenError> {
         let length = self.size as usize * self.size as usize * 4;
         let missing = length - self.bytes.len();
-        memory::reserve(&mut self.bytes, missing)
-            .map_err(|_| ScreenError::Memory { size: self.size })?;
+        memory::reserve(&mut self.bytes, missing).map_err(|_| ScreenError::Memory {
+            size: UVec2::splat(self.size),
+        })?;
         self.bytes.resize(length, 0);
         // SAFETY: the context is current. Its pixel-store parameters are as they were made, and
         // rows of four bytes a pixel have no gaps at any alignment, so that the driver

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::UVec2;
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 
 use crate::screen::driver_limits;
@@ -524,7 +525,10 @@ impl App<'_> {
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
-        self.frame_time = self.front.open(event_loop, self.size)?.frame_time();
+        self.frame_time = self
+            .front
+            .open(event_loop, UVec2::splat(self.size))?
+            .frame_time();
         (self.report)(Event::Opened);
         self.content.lose_texture();
         self.retitle();

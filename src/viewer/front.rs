@@ -46,11 +46,11 @@ pub(super) enum Wish {
 }
 
 impl Front {
-    /// Opens a window for pictures of `size` × `size` pixels.
+    /// Opens a window for pictures of `size`, width and height in pixels.
     pub(super) fn open(
         &mut self,
         event_loop: &ActiveEventLoop,
-        size: u32,
+        size: UVec2,
     ) -> Result<&GlWindow, ViewerError> {
         let gl_window = GlWindow::open(event_loop, size)?;
         gl_window.window().request_redraw();
@@ -138,13 +138,13 @@ impl Front {
         // As wide as a stroke of the characters.
         let line = (gl_window.cell().x / 7).max(1) as i32;
         let rings = values.rings.iter().flat_map(|&(pixel, wrong)| {
-            let bars = ring(gl_window.square(pixel), 4 * line, line);
+            let bars = ring(gl_window.rectangle(pixel), 4 * line, line);
             bars.map(|bar| (bar, wrong.color()))
         });
         let inspected = self.hud.inspected().into_iter().flat_map(|(pixel, _)| {
-            let square = gl_window.square(pixel);
-            let black = ring(square, 0, 3 * line).map(|bar| (bar, [0; 3]));
-            let white = ring(square, line, line).map(|bar| (bar, [255; 3]));
+            let rectangle = gl_window.rectangle(pixel);
+            let black = ring(rectangle, 0, 3 * line).map(|bar| (bar, [0; 3]));
+            let white = ring(rectangle, line, line).map(|bar| (bar, [255; 3]));
             black.into_iter().chain(white)
         });
         rings.chain(inspected).collect()

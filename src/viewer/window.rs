@@ -22,7 +22,7 @@ use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowAttributes};
 
-use crate::Image;
+use crate::image::Raster;
 use crate::screen::{Differs, Placement, Screen};
 
 use super::ViewerError;
@@ -55,8 +55,8 @@ pub(super) struct GlWindow {
     window: Window,
     /// The width and height of the surface in pixels; 0 where the window shows none.
     surface: UVec2,
-    /// N of the pictures that are shown.
-    picture: u32,
+    /// The width and height of the pictures that are shown, in pixels.
+    picture: UVec2,
     zoom: Zoom,
     /// A panel stands beside the picture.
     panel: bool,
@@ -82,23 +82,28 @@ struct GlResources {
 }
 
 impl GlWindow {
-    /// Opens a window for pictures of `picture` × `picture` pixels: so many logical pixels a side
-    /// where they fit the monitor, else the largest square that does.
+    /// Opens a window for pictures of `picture`, width and height in pixels: so many logical pixels
+    /// where they fit the monitor, else the largest rectangle of this aspect that does.
     pub(super) fn open(
         event_loop: &ActiveEventLoop,
-        picture: u32,
+        picture: UVec2,
     ) -> Result<GlWindow, ViewerError> {
         let monitor = event_loop
             .primary_monitor()
             .or_else(|| event_loop.available_monitors().next())
             .map(|monitor| monitor.size().to_logical::<f64>(monitor.scale_factor()))
             .filter(|size| size.width >= 1.0 && size.height >= 1.0);
-        let side = f64::from(picture);
-        let side = monitor.map_or(side, |size| side.min(size.width).min(size.height));
+        let size = picture.as_dvec2();
+        let part = monitor.map_or(1.0, |monitor| {
+            (monitor.width / size.x)
+                .min(monitor.height / size.y)
+                .min(1.0)
+        });
+        let size = size * part;
         let attributes = Window::default_attributes()
             .with_title("firsthit")
             .with_window_icon(icon())
-            .with_inner_size(LogicalSize::new(side, side));
+            .with_inner_size(LogicalSize::new(size.x.max(1.0), size.y.max(1.0)));
         #[cfg(all(unix, not(target_vendor = "apple")))]
         let attributes = named(attributes);
         let mut reasons = Vec::new();
@@ -116,7 +121,7 @@ impl GlWindow {
     fn open_with(
         event_loop: &ActiveEventLoop,
         attributes: &WindowAttributes,
-        picture: u32,
+        picture: UVec2,
         prefer_egl: bool,
     ) -> Result<GlWindow, Failure> {
         let create = |config: Option<&Config>| match config {
@@ -219,14 +224,14 @@ impl GlWindow {
         if self.panel == open {
             return;
         }
-        let side = self.zoom_to_fit().side;
+        let side = self.zoom_to_fit().size.x;
         self.change(|gl_window| gl_window.panel = open);
         if self.is_empty() {
             return;
         }
         let (window, surface) = (&self.window, self.surface);
         let size = if open {
-            let wanted = with_panel(surface, side, panel::wanted(self.cell()));
+            let wanted = with_panel(surface, self.picture, side, panel::wanted(self.cell()));
             self.growth.grow(window, surface, wanted)
         } else {
             self.growth.shrink(window, surface)
@@ -331,7 +336,7 @@ impl GlWindow {
     /// where `waits`, until it is done.
     pub(super) fn upload(
         &mut self,
-        image: &Image,
+        image: &Raster,
         rows: Range<u32>,
         waits: bool,
     ) -> Result<Duration, ViewerError> {
@@ -352,7 +357,7 @@ impl GlWindow {
     /// A window that is just being resized on the display may hold anything for some frames. So the
     /// first frames that are presented in a size are not checked, and wrong pixels are checked
     /// again in the next frames before the driver is called wrong.
-    pub(super) fn check_pixels(&mut self, image: &Image) -> Option<Differs> {
+    pub(super) fn check_pixels(&mut self, image: &Raster) -> Option<Differs> {
         let (placement, surface) = (self.placement(), self.surface);
         let resources = self.resources.as_ref()?;
         // A surface of fewer bits shows other bytes.
@@ -464,9 +469,9 @@ impl GlWindow {
         IVec2::new(window.x, self.surface.y as i32 - 1 - window.y)
     }
 
-    /// The square of the window that shows a pixel of the picture.
-    pub(super) fn square(&self, pixel: UVec2) -> Rect {
-        let [first, end] = self.placement().square_of(pixel, self.picture);
+    /// The rectangle of the window that shows a pixel of the picture.
+    pub(super) fn rectangle(&self, pixel: UVec2) -> Rect {
+        let [first, end] = self.placement().rectangle_of(pixel, self.picture);
         let height = self.surface.y as i32;
         Rect {
             min: IVec2::new(first.x, height - end.y),
@@ -490,7 +495,7 @@ impl GlResources {
         config: &Config,
         window: &Window,
         size: UVec2,
-        picture: u32,
+        picture: UVec2,
     ) -> Result<GlResources, Failure> {
         let display = config.display();
         let handle = window.window_handle()?.as_raw();

@@ -15,9 +15,10 @@ pub(super) struct Zoom {
 }
 
 impl Zoom {
-    /// Where a picture of `size` × `size` pixels lies on a surface.
-    pub(super) fn placement(&self, surface: UVec2, size: u32) -> Placement {
-        self.chosen.unwrap_or_else(|| Placement::fit(surface, size))
+    /// Where `picture`, width and height in pixels, lies on a surface.
+    pub(super) fn placement(&self, surface: UVec2, picture: UVec2) -> Placement {
+        self.chosen
+            .unwrap_or_else(|| Placement::fit(surface, picture))
     }
 
     /// Shows the whole picture.
@@ -27,30 +28,33 @@ impl Zoom {
 
     /// Zooms by `steps`, outward where they are negative. The pixel of the picture at `pointer`
     /// stays there, as long as the middle of the window shows the picture.
-    pub(super) fn by(&mut self, steps: i32, pointer: IVec2, surface: UVec2, size: u32) {
-        let least = Placement::fit(surface, size);
-        if least.side == 0 {
+    pub(super) fn by(&mut self, steps: i32, pointer: IVec2, surface: UVec2, picture: UVec2) {
+        // By the longer side, which the shorter one follows.
+        let size = picture.max_element();
+        let least = Placement::fit(surface, picture).size.max_element();
+        if least == 0 {
             return;
         }
-        let mut placement = self.placement(surface, size);
+        let mut placement = self.placement(surface, picture);
         for _ in 0..steps.unsigned_abs().min(MAX_MULTIPLE) {
+            let side = placement.size.max_element();
             let side = if steps > 0 {
-                larger(placement.side, size).max(least.side)
+                larger(side, size).max(least)
             } else {
-                smaller(placement.side, size)
+                smaller(side, size)
             };
-            if side <= least.side && steps < 0 {
+            if side <= least && steps < 0 {
                 self.fit();
                 return;
             }
-            placement = placement.zoomed(pointer, side, size);
+            placement = placement.zoomed(pointer, Placement::scaled(picture, side), picture);
         }
         self.chosen = Some(placement.around_the_middle(surface));
     }
 
     /// Moves the picture by so many pixels of the window.
-    pub(super) fn drag(&mut self, by: IVec2, surface: UVec2, size: u32) {
-        let mut placement = self.placement(surface, size);
+    pub(super) fn drag(&mut self, by: IVec2, surface: UVec2, picture: UVec2) {
+        let mut placement = self.placement(surface, picture);
         placement.origin = placement.origin.saturating_add(by);
         self.chosen = Some(placement.around_the_middle(surface));
     }
@@ -93,25 +97,33 @@ mod tests {
     use super::*;
 
     const SURFACE: UVec2 = UVec2::new(640, 500);
+    const PICTURE: UVec2 = UVec2::splat(500);
 
     #[test]
     fn what_is_under_the_pointer_stays_there_however_far() {
-        for size in [40, 500, 1500] {
+        for picture in [
+            UVec2::splat(40),
+            UVec2::splat(500),
+            UVec2::splat(1500),
+            UVec2::new(400, 33),
+            UVec2::new(70, 1400),
+        ] {
             let mut zoom = Zoom::default();
             let pointer = IVec2::new(300, 222);
-            let pixel = |zoom: &Zoom| zoom.placement(SURFACE, size).pixel_at(pointer, size);
+            let placement = |zoom: &Zoom| zoom.placement(SURFACE, picture);
+            let pixel = |zoom: &Zoom| placement(zoom).pixel_at(pointer, picture);
             for _ in 0..30 {
                 // A pixel of the window may show several of a picture that is larger; from 1:1 on
                 // it shows one.
-                let single = zoom.placement(SURFACE, size).side >= size;
+                let single = placement(&zoom).size.cmpge(picture).all();
                 let before = pixel(&zoom);
-                zoom.by(1, pointer, SURFACE, size);
+                zoom.by(1, pointer, SURFACE, picture);
                 if single {
                     assert_eq!(pixel(&zoom), before);
                 }
             }
-            assert_eq!(zoom.placement(SURFACE, size).side, MAX_MULTIPLE * size);
-            zoom.by(-100, pointer, SURFACE, size);
+            assert_eq!(placement(&zoom).size, MAX_MULTIPLE * picture);
+            zoom.by(-100, pointer, SURFACE, picture);
             assert_eq!(zoom.chosen, None, "all the way out is the whole picture");
         }
     }
@@ -120,39 +132,42 @@ mod tests {
     fn pixels_become_squares_of_one_size() {
         let mut zoom = Zoom::default();
         for _ in 0..40 {
-            zoom.by(1, IVec2::ZERO, SURFACE, 700);
-            let side = zoom.placement(SURFACE, 700).side;
+            zoom.by(1, IVec2::ZERO, SURFACE, UVec2::splat(700));
+            let side = zoom.placement(SURFACE, UVec2::splat(700)).size.x;
             assert!(side < 700 || side % 700 == 0, "{side}");
         }
         let mut zoom = Zoom::default();
-        zoom.by(40, IVec2::ZERO, SURFACE, 16384);
-        let side = zoom.placement(SURFACE, 16384).side;
+        zoom.by(40, IVec2::ZERO, SURFACE, UVec2::splat(16384));
+        let side = zoom.placement(SURFACE, UVec2::splat(16384)).size.x;
         assert!(side > 16384 && side <= Placement::max_side(16384));
     }
 
     #[test]
     fn the_middle_of_the_window_never_leaves_the_picture() {
         let mut zoom = Zoom::default();
-        zoom.by(3, IVec2::ZERO, SURFACE, 500);
+        zoom.by(3, IVec2::ZERO, SURFACE, PICTURE);
         let middle = SURFACE.as_ivec2() / 2;
         for by in [
             IVec2::splat(-100_000),
             IVec2::new(i32::MAX, 3),
             IVec2::splat(i32::MIN),
         ] {
-            zoom.drag(by, SURFACE, 500);
-            let placement = zoom.placement(SURFACE, 500);
-            assert!(placement.pixel_at(middle, 500).is_some(), "{placement:?}");
+            zoom.drag(by, SURFACE, PICTURE);
+            let placement = zoom.placement(SURFACE, PICTURE);
+            assert!(
+                placement.pixel_at(middle, PICTURE).is_some(),
+                "{placement:?}"
+            );
         }
         zoom.resize(SURFACE, UVec2::new(31, 1000));
-        let placement = zoom.placement(UVec2::new(31, 1000), 500);
-        assert!(placement.pixel_at(IVec2::new(15, 500), 500).is_some());
+        let placement = zoom.placement(UVec2::new(31, 1000), PICTURE);
+        assert!(placement.pixel_at(IVec2::new(15, 500), PICTURE).is_some());
     }
 
     #[test]
     fn a_window_without_room_is_not_zoomed() {
         let mut zoom = Zoom::default();
-        zoom.by(5, IVec2::ZERO, UVec2::new(640, 0), 500);
+        zoom.by(5, IVec2::ZERO, UVec2::new(640, 0), PICTURE);
         assert_eq!(zoom.chosen, None);
     }
 }
