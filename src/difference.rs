@@ -64,7 +64,7 @@ fn place(sample: f32) -> i32 {
 }
 
 /// The worst error of a pixel's samples; a NaN against a number is worse than any.
-fn worst(pixel: &[f32], truth: &[f32]) -> Option<u32> {
+pub(crate) fn worst(pixel: &[f32], truth: &[f32]) -> Option<u32> {
     pixel
         .iter()
         .zip(truth)

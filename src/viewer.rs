@@ -3,7 +3,8 @@
 //! [`run`] opens a window on X11 or Wayland and stays until it is closed. Each thing has a place:
 //! the keys are one table ([`key_table`]), α is a clock of its own that knows no window, the window
 //! knows no scene, pictures are made on threads of their own, and the application between them
-//! asks for one only when stage or α changed.
+//! asks for one only when stage or α changed. [`compare`] has the same window, with pictures that
+//! are there already in the place of a scene.
 
 mod action;
 mod app;
@@ -11,6 +12,7 @@ mod canvas;
 mod clipboard;
 mod comparison;
 mod content;
+mod desktop;
 mod error;
 mod frame_rate;
 mod front;
@@ -25,6 +27,7 @@ mod lines;
 mod menu;
 mod overlay;
 mod panel;
+mod pictures;
 mod playback;
 mod pointer;
 mod rect;
@@ -54,6 +57,7 @@ use crate::{Kernel, Render, Scene, Stage};
 
 pub use action::key_table;
 pub use error::ViewerError;
+pub use pictures::Picture;
 pub use playback::Pace;
 
 /// What the viewer shows and how it starts.
@@ -205,4 +209,19 @@ pub fn run(
     report: &mut dyn FnMut(Event),
 ) -> Result<(), ViewerError> {
     app::run(options, renderers, report)
+}
+
+/// Opens a window with two pictures and their difference in the false colours of
+/// [`error_color`](crate::difference::error_color), one of the three at a time, and stays until it
+/// is left. `report` is told what happens, on the calling thread.
+///
+/// A process can open one window, this or that of [`run`].
+///
+/// # Errors
+/// As [`run`]; [`ViewerError::Sizes`] unless both pictures have one size.
+///
+/// # Panics
+/// As [`run`].
+pub fn compare(pictures: [Picture; 2], report: &mut dyn FnMut(Event)) -> Result<(), ViewerError> {
+    pictures::compare(pictures, report)
 }

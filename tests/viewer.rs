@@ -12,6 +12,8 @@
 )]
 #![cfg(target_os = "linux")]
 
+#[path = "viewer/compare.rs"]
+mod compare;
 #[path = "viewer/displays.rs"]
 mod displays;
 #[path = "helpers/fault.rs"]

@@ -12,11 +12,12 @@ use firsthit::difference::{
 };
 use firsthit::image::{Format, LoadError, LoadOptions, LoadedImage, Raster, Window};
 use firsthit::report;
+use firsthit::viewer::{self, Event, Picture};
 
 use super::arguments::finite;
 use super::streams::is_standard;
 use super::watchdog::Watchdog;
-use super::{Failure, print, wrong};
+use super::{Failure, escaped, print, wrong};
 
 #[derive(Args)]
 #[command(
@@ -64,6 +65,9 @@ pub(crate) struct Arguments {
     /// Fail where a sample is further off than this many times that of B, or a NaN on one side only
     #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = most)]
     relative: Option<f64>,
+    /// Open a window that shows A, B and where they differ, and what both are at a pixel
+    #[arg(long)]
+    show: bool,
 }
 
 /// Pictures and how far they are apart.
@@ -117,10 +121,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             print(&text::text(arguments, &compared))?;
         }
     }
+    if arguments.show {
+        arguments.show(compared.pictures)?;
+    }
     failure.map_or(Ok(()), Err)
 }
 
 impl Arguments {
+    /// Shows the pictures in a window until that is closed.
+    fn show(&self, pictures: [LoadedImage; 2]) -> Result<(), Failure> {
+        let [a, b] = pictures;
+        let mut opening = Some(Watchdog::for_driver(a.image.width(), a.image.height()));
+        let picture = |path: &Path, loaded: LoadedImage| Picture {
+            name: escaped(&path.display().to_string()),
+            image: loaded.image,
+        };
+        let pictures = [picture(&self.a, a), picture(&self.b, b)];
+        viewer::compare(pictures, &mut |event| match event {
+            Event::Opened => opening = None,
+            Event::Differs { .. } => super::say(&event.to_string()),
+            _ => {}
+        })?;
+        Ok(())
+    }
+
     fn paths(&self) -> [&Path; 2] {
         [&self.a, &self.b]
     }

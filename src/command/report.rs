@@ -154,7 +154,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut watchdog = None;
     let measured = report.measure_pipelines(&request, &mut |waits| {
-        watchdog = waits.then(|| Watchdog::for_driver(request.size));
+        watchdog = waits.then(|| Watchdog::for_driver(request.size, request.size));
     });
     shown?;
     let all_shown = show(&report.pipeline_table());

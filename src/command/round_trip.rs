@@ -50,7 +50,7 @@ impl RoundTrip {
     }
 
     fn open_backend(&mut self, backend: Backend) -> Result<(), ScreenError> {
-        let _watchdog = Watchdog::for_driver(self.size);
+        let _watchdog = Watchdog::for_driver(self.size, self.size);
         self.screen = Some((backend, Offscreen::open(backend, self.size)?));
         Ok(())
     }
@@ -76,7 +76,7 @@ impl RoundTrip {
     /// error; where the backend was not asked for, the next one is tried then.
     pub(crate) fn send(&mut self, image: &Image) -> Result<(), ScreenError> {
         while let Some((backend, screen)) = &mut self.screen {
-            let watchdog = Watchdog::for_driver(self.size);
+            let watchdog = Watchdog::for_driver(self.size, self.size);
             let sent = screen.show(image).and_then(|back| compare(image, &back));
             drop(watchdog);
             match sent {

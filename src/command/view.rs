@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let programs = arguments.programs.start()?.into_iter();
     let renderers = programs.map(|program| -> Box<dyn Render + Send> { Box::new(program) });
-    let mut opening = Some(Watchdog::for_driver(options.size));
+    let mut opening = Some(Watchdog::for_driver(options.size, options.size));
     viewer::run(options, renderers.collect(), &mut |event| match event {
         Event::Opened => opening = None,
         Event::NotSaved(_)

@@ -26,10 +26,10 @@ impl Watchdog {
         (!is_file).then(|| Watchdog::begin(what(), None))
     }
 
-    /// Watches a call of an OpenGL driver with pictures of `size` × `size` pixels.
-    pub(crate) fn for_driver(size: u32) -> Watchdog {
+    /// Watches a call of an OpenGL driver with pictures of `width` × `height` pixels.
+    pub(crate) fn for_driver(width: u32, height: u32) -> Watchdog {
         // A processor of today draws ten pixels in a microsecond.
-        let work = Duration::from_micros(u64::from(size) * u64::from(size));
+        let work = Duration::from_micros(u64::from(width) * u64::from(height));
         Watchdog::begin(
             "for the OpenGL driver".to_owned(),
             Some(Duration::from_secs(20) + work),

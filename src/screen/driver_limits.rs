@@ -20,21 +20,20 @@ const BYTES_A_PIXEL: u64 = 64;
 const MOST_RENDERERS: usize = 32;
 const OTHER_THREADS: usize = 4;
 
-/// Checks that the system grants what a driver will ask for, for pictures of `size` × `size`
-/// pixels.
+/// Checks that the system grants what a driver will ask for, for pictures of so many pixels.
 ///
 /// # Errors
 /// [`ScreenError::Addresses`] and [`ScreenError::Threads`] where it is refused.
-pub(crate) fn check(size: u32) -> Result<(), ScreenError> {
+pub(crate) fn check(pixels: u64) -> Result<(), ScreenError> {
     #[cfg(target_os = "linux")]
-    addresses(size)?;
-    let _ = size;
+    addresses(pixels)?;
+    let _ = pixels;
     threads().map_err(ScreenError::Threads)
 }
 
 /// Checks the address space, which nothing but `ulimit -v` limits.
 #[cfg(target_os = "linux")]
-fn addresses(size: u32) -> Result<(), ScreenError> {
+fn addresses(pixels: u64) -> Result<(), ScreenError> {
     use rustix::process::{Resource, getrlimit};
 
     let Some(limit) = getrlimit(Resource::As).current else {
@@ -46,7 +45,7 @@ fn addresses(size: u32) -> Result<(), ScreenError> {
         .find_map(|line| line.strip_prefix("VmSize:")?.split_whitespace().next());
     let kib: u64 = mapped.and_then(|kib| kib.parse().ok()).unwrap_or(0);
     let left = limit.saturating_sub(kib << 10);
-    let needed = ADDRESSES + BYTES_A_PIXEL * u64::from(size) * u64::from(size);
+    let needed = ADDRESSES + BYTES_A_PIXEL * pixels;
     if left < needed {
         return Err(ScreenError::Addresses {
             left: left >> 20,

@@ -34,7 +34,7 @@ impl Backend {
 
     /// A context for pictures of `size` × `size` pixels.
     pub(super) fn open(self, profile: Profile, size: u32) -> Result<Box<dyn Context>, ScreenError> {
-        driver_limits::check(size)?;
+        driver_limits::check(u64::from(size).pow(2))?;
         Ok(match self {
             #[cfg(not(target_vendor = "apple"))]
             Backend::Egl => Box::new(Egl::open(profile)?),

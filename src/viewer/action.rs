@@ -1,13 +1,35 @@
-//! What the keys do: one table.
+//! What the keys do: one table for each thing that a window shows.
 
 use winit::keyboard::{KeyCode, NamedKey};
 
 use crate::Stage;
 
+/// What a window shows, which decides what its keys do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Subject {
+    /// A scene, traced.
+    #[default]
+    Scene,
+    /// Two pictures and their difference.
+    Pictures,
+}
+
+/// One of the pictures of [`Subject::Pictures`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Side {
+    #[default]
+    A,
+    B,
+    /// How far A is from B.
+    Difference,
+}
+
 /// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Action {
     Stage(Stage),
+    Show(Side),
+    ShowNext,
     Pause,
     NextFrame,
     PreviousFrame,
@@ -80,14 +102,54 @@ impl Binding {
             ..Binding::new(keys, stage.title(), Action::Stage(stage))
         }
     }
+
+    const fn show(
+        side: Side,
+        (keys, label): (&'static str, &'static str),
+        characters: &'static [char],
+        physical_keys: &'static [KeyCode],
+    ) -> Binding {
+        Binding {
+            characters,
+            physical_keys,
+            ..Binding::new(keys, label, Action::Show(side))
+        }
+    }
 }
 
 use Action as A;
 use KeyCode as C;
 use NamedKey as N;
 
-/// Every action of the viewer and the keys it is on.
-pub(super) const BINDINGS: &[Binding] = &[
+/// The actions of a window that shows pictures, and the keys they are on.
+const OF_PICTURES: &[Binding] = &[
+    Binding::show(
+        Side::A,
+        ("1", "Picture A"),
+        &['1'],
+        &[C::Digit1, C::Numpad1],
+    ),
+    Binding::show(
+        Side::B,
+        ("2", "Picture B"),
+        &['2'],
+        &[C::Digit2, C::Numpad2],
+    ),
+    Binding::show(
+        Side::Difference,
+        ("3", "Difference"),
+        &['3'],
+        &[C::Digit3, C::Numpad3],
+    ),
+    Binding {
+        named: &[N::Tab],
+        detail: "A, B, their difference in turn",
+        ..Binding::new("Tab", "Next picture", A::ShowNext)
+    },
+];
+
+/// The actions of a window that shows a scene, and the keys they are on.
+const OF_SCENES: &[Binding] = &[
     Binding::stage(Stage::Image, "1", &['1'], &[C::Digit1, C::Numpad1]),
     Binding::stage(Stage::Spheres, "2", &['2'], &[C::Digit2, C::Numpad2]),
     Binding::stage(Stage::Tetrahedron, "3", &['3'], &[C::Digit3, C::Numpad3]),
@@ -174,6 +236,10 @@ pub(super) const BINDINGS: &[Binding] = &[
         detail: "stage, kernel, α, times",
         ..Binding::new("I", "Information", A::Information)
     },
+];
+
+/// The actions of every window, and the keys they are on.
+const OF_WINDOWS: &[Binding] = &[
     Binding {
         characters: &['c'],
         physical_keys: &[C::KeyC],
@@ -213,10 +279,40 @@ pub(super) const BINDINGS: &[Binding] = &[
     },
 ];
 
-/// What the mouse does, as the table of keys says what they do.
-const MOUSE: [(&str, &str); 6] = [
+impl Subject {
+    /// Every action of a window that shows this, and the keys it is on.
+    pub(super) fn bindings(self) -> impl Iterator<Item = &'static Binding> {
+        let own = match self {
+            Subject::Scene => OF_SCENES,
+            Subject::Pictures => OF_PICTURES,
+        };
+        own.iter().chain(OF_WINDOWS)
+    }
+
+    /// The keys of a window that shows this and what they do, one a line.
+    pub(super) fn key_table(self) -> String {
+        self.bindings()
+            .map(|binding| match binding.detail {
+                "" => row(binding.keys, binding.label),
+                detail => row(binding.keys, &format!("{}: {detail}", binding.label)),
+            })
+            .collect()
+    }
+
+    /// What the mouse does there, in lines as those of the keys.
+    pub(super) fn mouse_table(self) -> String {
+        let click = match self {
+            Subject::Scene => "Explain the pixel",
+            Subject::Pictures => "Keep the pixel's values",
+        };
+        let rows = MOUSE.iter().map(|(hand, does)| row(hand, does));
+        row("click", click) + &rows.collect::<String>()
+    }
+}
+
+/// What the mouse does but for a click, as the table of keys says what they do.
+const MOUSE: [(&str, &str); 5] = [
     ("pointer", "Name the pixel"),
-    ("click", "Explain the pixel"),
     ("wheel", "Zoom; scroll the panel"),
     ("drag", "Move the picture"),
     ("right", "Menu"),
@@ -232,16 +328,17 @@ pub(super) struct Row {
     pub(super) opens_group: bool,
 }
 
-/// Every action, as the menu shows it.
-pub(super) fn rows() -> impl Iterator<Item = Row> {
-    BINDINGS.iter().map(|binding| Row {
+/// Every action of a window that shows `subject`, as the menu shows it.
+pub(super) fn rows(subject: Subject) -> impl Iterator<Item = Row> {
+    subject.bindings().map(move |binding| Row {
         keys: binding.keys,
         label: binding.label,
         action: binding.action,
-        opens_group: matches!(
-            binding.action,
-            A::Pause | A::SavePng | A::Errors | A::Fit | A::Menu | A::Leave
-        ),
+        opens_group: match binding.action {
+            A::Pause | A::SavePng | A::Errors | A::Fit | A::Menu | A::Leave => true,
+            A::Copy => subject == Subject::Pictures,
+            _ => false,
+        },
     })
 }
 
@@ -251,18 +348,7 @@ pub(super) fn rows() -> impl Iterator<Item = Row> {
 /// assert!(firsthit::viewer::key_table().contains("Space    Pause / Resume\n"));
 /// ```
 pub fn key_table() -> String {
-    BINDINGS
-        .iter()
-        .map(|binding| match binding.detail {
-            "" => row(binding.keys, binding.label),
-            detail => row(binding.keys, &format!("{}: {detail}", binding.label)),
-        })
-        .collect()
-}
-
-/// What the mouse does, in lines as those of [`key_table`].
-pub(super) fn mouse_table() -> String {
-    MOUSE.iter().map(|(hand, does)| row(hand, does)).collect()
+    Subject::Scene.key_table()
 }
 
 /// The column of a table in which it says what a key does.
@@ -276,24 +362,29 @@ fn row(keys: &str, does: &str) -> String {
 mod tests {
     use super::*;
 
+    const SUBJECTS: [Subject; 2] = [Subject::Scene, Subject::Pictures];
+
     #[test]
-    fn the_table_shows_every_key_once() {
-        let table = key_table();
-        assert_eq!(table.lines().count(), BINDINGS.len());
-        assert!(table.starts_with("1        Image\n"));
-        let mut keys: Vec<_> = BINDINGS.iter().map(|binding| binding.keys).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        assert_eq!(keys.len(), BINDINGS.len());
-        let lines = table.lines().chain(MOUSE.map(|(hand, _)| hand));
-        for keys in lines.map(|line| line.split("  ").next().unwrap_or(line)) {
-            assert!(keys.chars().count() + 2 <= DOES, "{keys}");
+    fn the_tables_show_every_key_once() {
+        assert!(key_table().starts_with("1        Image\n"));
+        for subject in SUBJECTS {
+            let table = subject.key_table();
+            assert_eq!(table.lines().count(), subject.bindings().count());
+            let mut keys: Vec<_> = subject.bindings().map(|binding| binding.keys).collect();
+            let count = keys.len();
+            keys.sort_unstable();
+            keys.dedup();
+            assert_eq!(keys.len(), count);
+            for line in (table + &subject.mouse_table()).lines() {
+                let keys = line.split("  ").next().unwrap_or(line);
+                assert!(keys.chars().count() + 2 <= DOES, "{keys}");
+            }
         }
     }
 
     #[test]
     fn a_label_is_four_words_at_most() {
-        for row in rows() {
+        for row in SUBJECTS.into_iter().flat_map(rows) {
             let words = row.label.split_whitespace().filter(|word| *word != "/");
             assert!(words.count() <= 4, "{}", row.label);
             assert!(row.label.chars().next().is_some_and(char::is_uppercase));

@@ -15,17 +15,18 @@ use crate::screen::driver_limits;
 use crate::tracer::Tally;
 use crate::{Image, Render, RenderError, Scene, Stage};
 
+use super::action::Subject;
 use super::comparison::{self, Comparing};
 use super::content::{Content, Redisplay, STAND_IN};
+use super::desktop::event_loop;
 use super::frame_rate::FrameRate;
-use super::front::Front;
+use super::front::{Front, POLL};
 use super::information::Times;
 use super::playback::Playback;
 use super::renderer::{Renderer, Renderers};
-#[cfg(all(unix, not(target_vendor = "apple")))]
-use super::server::event_loop;
 use super::tracing::{Frame, Pictures, Reply, Traced, Tracing};
 use super::watch::{Change, Watch, Watched};
+use super::window::Opening;
 use super::{Event, Options, ViewerError};
 
 /// How long a redisplay waits for the next picture before it draws the last one again.
@@ -33,9 +34,6 @@ const PATIENCE: Duration = Duration::from_millis(100);
 
 /// How long a renderer is at a picture before that is said.
 const SLOW: Duration = Duration::from_millis(500);
-
-/// How often a window that nothing can be drawn on is polled: no event says when that ends.
-const POLL: Duration = Duration::from_millis(250);
 
 /// Opens the viewer and stays until it is left.
 pub(super) fn run(
@@ -46,7 +44,7 @@ pub(super) fn run(
     let started = Instant::now();
     let of_kernels = Pictures::of_kernels(&options)?;
     let event_loop = event_loop()?;
-    driver_limits::check(options.size)?;
+    driver_limits::check(u64::from(options.size).pow(2))?;
     let proxy = event_loop.create_proxy();
     let wake = move || {
         // Without an event loop nobody waits.
@@ -73,7 +71,7 @@ pub(super) fn run(
         watch: watch.map_err(ViewerError::Thread)?,
         failure_of_renderer: None,
         content: Content::default(),
-        front: Front::default(),
+        front: Front::new(Subject::Scene),
         next_frame: started,
         frame_time: Duration::ZERO,
         frame_rate: FrameRate::default(),
@@ -525,10 +523,12 @@ impl App<'_> {
     }
 
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
-        self.frame_time = self
-            .front
-            .open(event_loop, UVec2::splat(self.size))?
-            .frame_time();
+        let opening = Opening {
+            picture: UVec2::splat(self.size),
+            magnification: 1,
+            panel: false,
+        };
+        self.frame_time = self.front.open(event_loop, opening)?.frame_time();
         (self.report)(Event::Opened);
         self.content.lose_texture();
         self.retitle();
@@ -542,12 +542,4 @@ impl App<'_> {
             event_loop.exit();
         }
     }
-}
-
-#[cfg(not(all(unix, not(target_vendor = "apple"))))]
-fn event_loop() -> Result<winit::event_loop::EventLoop<()>, ViewerError> {
-    winit::event_loop::EventLoop::new().map_err(|error| ViewerError::Display {
-        server: "the desktop".to_owned(),
-        reason: super::error::reason(&error),
-    })
 }

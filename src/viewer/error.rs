@@ -2,9 +2,14 @@
 
 use crate::RenderError;
 use crate::diagnosis::ExaminationError;
+use crate::difference::SizesDiffer;
 use crate::image::ImageError;
 use crate::screen::ScreenError;
 use crate::tracer::TraceError;
+
+/// What else there is to do where no window can be had.
+const WITHOUT: &str =
+    "or use `firsthit capture`, or `firsthit compare` without --show, which need no window";
 
 /// A viewer that cannot open or go on. Each message is one line.
 #[derive(Debug, thiserror::Error)]
@@ -12,12 +17,12 @@ use crate::tracer::TraceError;
 pub enum ViewerError {
     /// Neither an X server nor a Wayland compositor is named.
     #[error(
-        "no display: neither WAYLAND_DISPLAY nor DISPLAY is set: start the viewer in a graphical session, or use `firsthit capture`, which works without one"
+        "no display: neither WAYLAND_DISPLAY nor DISPLAY is set: start the viewer in a graphical session, {WITHOUT}"
     )]
     NoDisplay,
     /// Libraries that a window needs are not there.
     #[error(
-        "a window on {server} needs {libraries}: install them (Debian packages: {packages}), or use `firsthit capture`, which works without a window"
+        "a window on {server} needs {libraries}: install them (Debian packages: {packages}), {WITHOUT}"
     )]
     Missing {
         /// The kind of display.
@@ -29,7 +34,7 @@ pub enum ViewerError {
     },
     /// The display is named but does not answer as it should.
     #[error(
-        "{server} cannot be used ({reason}): start the viewer in a graphical session, or use `firsthit capture`, which works without one"
+        "{server} cannot be used ({reason}): start the viewer in a graphical session, {WITHOUT}"
     )]
     Display {
         /// The display, as its environment variable names it.
@@ -39,17 +44,18 @@ pub enum ViewerError {
     },
     /// There is no window with OpenGL 3.3 core.
     #[error(
-        "no window with OpenGL 3.3 core can be made ({0}): install a driver (Debian packages: libgl1 libglx-mesa0 libegl1 libegl-mesa0 libgl1-mesa-dri), or use `firsthit capture`, which works without a window"
+        "no window with OpenGL 3.3 core can be made ({0}): install a driver (Debian packages: libgl1 libglx-mesa0 libegl1 libegl-mesa0 libgl1-mesa-dri), {WITHOUT}"
     )]
     OpenGl(String),
     /// The display went away while the window was open.
-    #[error(
-        "the display went away, and the window with it: start the viewer again, or use `firsthit capture`, which works without one"
-    )]
+    #[error("the display went away, and the window with it: start the viewer again, {WITHOUT}")]
     Lost,
     /// The texture and the quad cannot be made or used.
     #[error(transparent)]
     Screen(#[from] ScreenError),
+    /// Two pictures are not of one size.
+    #[error(transparent)]
+    Sizes(#[from] SizesDiffer),
     /// There is no room for the picture.
     #[error(transparent)]
     Image(#[from] ImageError),

@@ -8,14 +8,17 @@ use std::time::Duration;
 use winit::event_loop::ActiveEventLoop;
 use winit::keyboard::ModifiersState;
 
-use super::action::Action;
+use super::action::{Action, Subject};
 use super::clipboard::Clipboard;
 use super::hud::{Hud, HudValues, ring};
 use super::menu::Menu;
 use super::pointer::Pointer;
-use super::window::{GlWindow, Mark};
+use super::window::{GlWindow, Mark, Opening};
 use super::{Counts, ViewerError};
 use glam::{IVec2, UVec2};
+
+/// How often a window that nothing can be drawn on is polled: no event says when that ends.
+pub(super) const POLL: Duration = Duration::from_millis(250);
 
 /// The window and what it is handled with.
 #[derive(Default)]
@@ -46,13 +49,21 @@ pub(super) enum Wish {
 }
 
 impl Front {
-    /// Opens a window for pictures of `size`, width and height in pixels.
+    /// No window yet; it will show `subject`.
+    pub(super) fn new(subject: Subject) -> Front {
+        Front {
+            hud: Hud::new(subject),
+            ..Front::default()
+        }
+    }
+
+    /// Opens a window.
     pub(super) fn open(
         &mut self,
         event_loop: &ActiveEventLoop,
-        size: UVec2,
+        opening: Opening,
     ) -> Result<&GlWindow, ViewerError> {
-        let gl_window = GlWindow::open(event_loop, size)?;
+        let gl_window = GlWindow::open(event_loop, opening)?;
         gl_window.window().request_redraw();
         self.clipboard = Some(Clipboard::beside(gl_window.window()));
         Ok(self.gl_window.insert(gl_window))
@@ -207,7 +218,7 @@ impl Front {
             && let Some(gl_window) = &self.gl_window
         {
             let place = place.map_or(IVec2::ZERO, |place| gl_window.place_of(place));
-            self.hud.menu = Some(Menu::open(place));
+            self.hud.menu = Some(Menu::open(self.hud.subject(), place));
         }
         self.touch();
     }

@@ -7,7 +7,7 @@ use glam::{IVec2, UVec2};
 
 use crate::difference::error_color;
 
-use super::action::{Action, DOES, key_table, mouse_table};
+use super::action::{Action, DOES, Subject};
 use super::canvas::TextBox;
 use super::layout::Layout;
 use super::lines::{DIM, HEADING, INK, Line, wrap};
@@ -19,12 +19,15 @@ use super::wrong::Wrong;
 /// How long a message stays, and the name of the pixel on which the pointer rests.
 const READING_TIME: Duration = Duration::from_secs(4);
 
-/// The column of an explanation and of the information in which the values begin.
-const VALUES: usize = 13;
+/// The column of an explanation, of the information and of a pixel of pictures in which the values
+/// begin.
+pub(super) const VALUES: usize = 13;
 
 /// The head-up display.
 #[derive(Debug, Default)]
 pub(super) struct Hud {
+    /// What the window shows.
+    subject: Subject,
     pub(super) menu: Option<Menu>,
     pub(super) information: bool,
     /// Errors are shown, and what they are beside them.
@@ -46,21 +49,29 @@ enum PanelText {
     Pixel(UVec2, String),
 }
 
+/// Lines of the panel under a heading.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub(super) heading: &'static str,
+    pub(super) text: String,
+    /// The column under which a line that is too long goes on.
+    pub(super) hanging: usize,
+    /// Where false colours are shown: the kinds of wrong pixels that there are, and how many of
+    /// each. The scale stands below them.
+    pub(super) scale: Option<Vec<(Wrong, usize)>>,
+}
+
 /// What the head-up display says about the picture; each only where it is shown.
 #[derive(Debug, Default)]
 pub(super) struct HudValues {
-    /// Stage, kernel, α, times.
-    pub(super) information: String,
+    /// The panel, but for the longer text.
+    pub(super) parts: Vec<Part>,
     /// The pixel under the pointer.
     pub(super) pixel: String,
     /// Where the pointer is.
     pub(super) pointer: Option<IVec2>,
     /// What is said as long as it is so.
     pub(super) notice: Option<String>,
-    /// What the error view says.
-    pub(super) errors: Option<String>,
-    /// The kinds of wrong pixels that there are, and how many of each.
-    pub(super) wrong: Vec<(Wrong, usize)>,
     /// The wrong pixels, column and row, that are ringed.
     pub(super) rings: Vec<(UVec2, Wrong)>,
     /// The rows of the menu that stand for something that is on.
@@ -68,14 +79,33 @@ pub(super) struct HudValues {
 }
 
 impl Hud {
+    /// That of a window that shows `subject`.
+    pub(super) fn new(subject: Subject) -> Hud {
+        Hud {
+            subject,
+            ..Hud::default()
+        }
+    }
+
+    /// What the window shows.
+    pub(super) fn subject(&self) -> Subject {
+        self.subject
+    }
+
     /// Whether anything stands beside the picture.
     pub(super) fn has_panel(&self) -> bool {
-        self.information || self.errors || self.text != PanelText::Nothing
+        self.subject == Subject::Pictures
+            || self.information
+            || self.errors
+            || self.text != PanelText::Nothing
     }
 
     /// Whether the pixel under the pointer is named.
     pub(super) fn names_pixels(&self) -> bool {
-        self.information || self.inspected().is_some() || self.pointed.is_some()
+        self.subject == Subject::Pictures
+            || self.information
+            || self.inspected().is_some()
+            || self.pointed.is_some()
     }
 
     /// Names the pixel under the pointer, which moved at `now`, for a while.
@@ -200,23 +230,17 @@ impl Hud {
             lines.extend(wrap(heading, columns, 0, HEADING));
             lines.extend(text);
         };
-        if self.information {
-            part(
-                "Information",
-                wrap(&values.information, columns, VALUES, INK),
-            );
-        }
-        if let Some(errors) = &values.errors {
-            let mut text = wrap(errors, columns, 2, INK);
-            text.extend(legend(&values.wrong));
-            part("Errors", text);
+        for given in &values.parts {
+            let mut text = wrap(&given.text, columns, given.hanging, INK);
+            text.extend(given.scale.iter().flat_map(|wrong| legend(wrong)));
+            part(given.heading, text);
         }
         match &self.text {
             PanelText::Nothing => {}
             PanelText::Keys => {
-                let mut text = wrap(&key_table(), columns, DOES, INK);
+                let mut text = wrap(&self.subject.key_table(), columns, DOES, INK);
                 text.push(Line::default());
-                text.extend(wrap(&mouse_table(), columns, DOES, INK));
+                text.extend(wrap(&self.subject.mouse_table(), columns, DOES, INK));
                 part("Keys and mouse", text);
             }
             PanelText::Pixel(_, text) => {
@@ -249,7 +273,7 @@ fn legend(wrong: &[(Wrong, usize)]) -> Vec<Line> {
             line.text(column, label, INK)
         });
     let mut lines: Vec<Line> = kinds.collect();
-    lines.extend([strip, labels, swatch(error_color(Some(0)), "exact")]);
+    lines.extend([strip, labels, swatch(error_color(Some(0)), "no error")]);
     if !wrong.iter().any(|(kind, _)| *kind == Wrong::NotANumber) {
         lines.push(swatch(error_color(None), "NaN"));
     }
@@ -295,7 +319,7 @@ mod tests {
         hud.inspect(UVec2::new(3, 4), "pixel".to_owned());
         assert!(!hud.keys_are_shown() && hud.has_panel());
         assert_eq!(hud.inspected(), Some((UVec2::new(3, 4), "pixel")));
-        hud.menu = Some(Menu::open(IVec2::ZERO));
+        hud.menu = Some(Menu::open(Subject::Scene, IVec2::ZERO));
         assert!(hud.close() && hud.inspected().is_some());
         assert!(hud.close() && !hud.has_panel());
         assert!(!hud.close());

@@ -71,14 +71,17 @@ pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
 
 /// A pixel by its column and row, its floats and its bytes.
 pub(super) fn name_pixel(image: &Image, pixel: UVec2) -> String {
-    let Some([red, green, blue]) = image.pixel(pixel.x, pixel.y) else {
+    let Some(color) = image.pixel(pixel.x, pixel.y) else {
         return String::new();
     };
+    let [floats, bytes] = color_text(color);
+    format!("column {}, row {}: {floats} = {bytes}", pixel.x, pixel.y)
+}
+
+/// Red, green and blue, as floats and as bytes.
+pub(super) fn color_text([red, green, blue]: [f32; 3]) -> [String; 2] {
     let [r, g, b] = [red, green, blue].map(display_byte);
-    format!(
-        "column {}, row {}: {red} {green} {blue} = {r} {g} {b}",
-        pixel.x, pixel.y
-    )
+    [format!("{red} {green} {blue}"), format!("{r} {g} {b}")]
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use winit::keyboard::{Key, KeyLocation, ModifiersState, PhysicalKey};
 
-use super::action::{Action, BINDINGS, Binding};
+use super::action::{Action, Binding, Subject};
 
 /// A key going down.
 #[derive(Clone, Copy, Debug)]
@@ -19,14 +19,14 @@ pub(super) struct KeyPress<'a> {
 }
 
 impl KeyPress<'_> {
-    /// The action it asks for, if any.
+    /// The action it asks for in a window that shows `subject`, if any.
     ///
     /// The logical key decides where it is an ASCII letter, a digit or a key without a character:
     /// on-screen keyboards and programs that type report such keys with false physical keys.
     /// Otherwise the physical key comes first: the digit row of a French keyboard gives `&é"'(-è`,
     /// a keypad without NumLock gives arrows, and no binding has the letters of a Cyrillic
     /// keyboard.
-    pub(super) fn action(&self) -> Option<Action> {
+    pub(super) fn action(&self, subject: Subject) -> Option<Action> {
         let others = ModifiersState::ALT | ModifiersState::SUPER;
         if self.modifiers.intersects(others) {
             return None;
@@ -36,11 +36,11 @@ impl KeyPress<'_> {
             Key::Named(_) => self.location != KeyLocation::Numpad,
             Key::Unidentified(_) | Key::Dead(_) => false,
         };
-        let by_logical_key = || self.find(|binding| self.matches_logical_key(binding));
+        let by_logical_key = || self.find(subject, |binding| self.matches_logical_key(binding));
         let binding = if certain {
             by_logical_key()
         } else {
-            self.find(|binding| self.matches_physical_key(binding))
+            self.find(subject, |binding| self.matches_physical_key(binding))
                 .or_else(by_logical_key)
         };
         binding
@@ -48,10 +48,14 @@ impl KeyPress<'_> {
             .map(|binding| binding.action)
     }
 
-    fn find(&self, matches: impl Fn(&Binding) -> bool) -> Option<&'static Binding> {
+    fn find(
+        &self,
+        subject: Subject,
+        matches: impl Fn(&Binding) -> bool,
+    ) -> Option<&'static Binding> {
         let (shift, ctrl) = (self.modifiers.shift_key(), self.modifiers.control_key());
-        BINDINGS
-            .iter()
+        subject
+            .bindings()
             .filter(|binding| binding.ctrl == ctrl)
             .filter(|binding| binding.shift.is_none_or(|wanted| wanted == shift))
             .find(|binding| matches(binding))
@@ -124,7 +128,7 @@ mod tests {
             modifiers,
             repeat: false,
         }
-        .action()
+        .action(Subject::Scene)
     }
 
     fn character(text: &str) -> Key {
@@ -265,7 +269,11 @@ mod tests {
 
     #[test]
     fn holding_a_key_repeats_only_what_moves() {
-        for binding in BINDINGS {
+        let bindings = |subject: Subject| subject.bindings().map(move |binding| (subject, binding));
+        let all = [Subject::Scene, Subject::Pictures]
+            .into_iter()
+            .flat_map(bindings);
+        for (subject, binding) in all {
             let logical_key = match (binding.characters, binding.named) {
                 ([first, ..], _) => character(&first.to_string()),
                 (_, [first, ..]) => Key::Named(*first),
@@ -282,7 +290,7 @@ mod tests {
                     modifiers,
                     repeat,
                 }
-                .action()
+                .action(subject)
             };
             assert_eq!(press(false), Some(binding.action));
             let moves = matches!(

@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use super::action::{Action, Row, rows};
+use super::action::{Action, Row, Subject, rows};
 use super::canvas::{Color, TextBox};
 use super::lines::{DIM, INK};
 use super::rect::Rect;
@@ -14,6 +14,8 @@ const LINE: Color = [90, 90, 100, 255];
 /// The open menu.
 #[derive(Debug)]
 pub(super) struct Menu {
+    /// What the window shows.
+    subject: Subject,
     /// Its top left corner, a pixel of the window, as far as it fits there.
     place: IVec2,
     /// The row that Enter or a click takes.
@@ -21,16 +23,21 @@ pub(super) struct Menu {
 }
 
 impl Menu {
-    pub(super) fn open(place: IVec2) -> Menu {
+    pub(super) fn open(subject: Subject, place: IVec2) -> Menu {
         Menu {
+            subject,
             place,
             selected: None,
         }
     }
 
+    fn rows(&self) -> impl Iterator<Item = Row> {
+        rows(self.subject)
+    }
+
     /// Selects the row so many rows further, around the ends.
     pub(super) fn step(&mut self, by: isize) {
-        let count = rows().count() as isize;
+        let count = self.rows().count() as isize;
         let from = match self.selected {
             Some(row) => row as isize,
             None if by > 0 => -1,
@@ -53,12 +60,12 @@ impl Menu {
     /// What a click at `place` asks for.
     pub(super) fn click(&self, place: IVec2, surface: UVec2, cell: UVec2) -> Option<Action> {
         let under = self.row_at(place, surface, cell)?;
-        rows().nth(under).map(|row| row.action)
+        self.rows().nth(under).map(|row| row.action)
     }
 
     /// What the selected row asks for.
     pub(super) fn chosen(&self) -> Option<Action> {
-        rows().nth(self.selected?).map(|row| row.action)
+        self.rows().nth(self.selected?).map(|row| row.action)
     }
 
     fn row_at(&self, place: IVec2, surface: UVec2, cell: UVec2) -> Option<usize> {
@@ -71,10 +78,10 @@ impl Menu {
     /// the window is moved so that the selected row is seen.
     fn layout(&self, surface: UVec2, cell: UVec2) -> (Rect, Vec<Rect>) {
         let border = (cell.x / 2) as i32;
-        let width = (columns() * cell.x) as i32 + 2 * border;
+        let width = (self.columns() * cell.x) as i32 + 2 * border;
         let mut y = border;
         let mut places: Vec<Rect> = Vec::new();
-        for row in rows() {
+        for row in self.rows() {
             y += if row.opens_group { cell.x as i32 } else { 0 };
             let size = UVec2::new(width as u32, cell.y + cell.y / 7);
             places.push(Rect::new(IVec2::new(0, y), size));
@@ -101,7 +108,7 @@ impl Menu {
             let margin = (row.size().y - cell.y) / 2;
             row.min + IVec2::new((cell.x / 2 + column * cell.x) as i32, margin as i32)
         };
-        for (number, (row, place)) in rows().zip(&places).enumerate() {
+        for (number, (row, place)) in self.rows().zip(&places).enumerate() {
             if row.opens_group {
                 let corner = place.min - IVec2::new(0, (cell.x / 2) as i32 + 1);
                 let size = UVec2::new(place.size().x, (cell.x / 7).max(1));
@@ -114,20 +121,20 @@ impl Menu {
                 text_box.text(left(place, 0), "•", INK);
             }
             text_box.text(left(place, 2), row.label, INK);
-            let keys = columns() - 1 - row.keys.chars().count() as u32;
+            let keys = self.columns() - 1 - row.keys.chars().count() as u32;
             text_box.text(left(place, keys), row.keys, DIM);
         }
         text_box
     }
-}
 
-/// The columns of the widest row: a mark, the label, the keys, a margin.
-fn columns() -> u32 {
-    let longest = |text: fn(&Row) -> &'static str| {
-        let lengths = rows().map(|row| text(&row).chars().count());
-        lengths.max().unwrap_or(0) as u32
-    };
-    2 + longest(|row| row.label) + 3 + longest(|row| row.keys) + 1
+    /// The columns of the widest row: a mark, the label, the keys, a margin.
+    fn columns(&self) -> u32 {
+        let longest = |text: fn(&Row) -> &'static str| {
+            let lengths = self.rows().map(|row| text(&row).chars().count());
+            lengths.max().unwrap_or(0) as u32
+        };
+        2 + longest(|row| row.label) + 3 + longest(|row| row.keys) + 1
+    }
 }
 
 #[cfg(test)]
@@ -137,9 +144,9 @@ mod tests {
 
     #[test]
     fn stepping_goes_through_every_row_and_around() {
-        let mut menu = Menu::open(IVec2::ZERO);
+        let mut menu = Menu::open(Subject::Scene, IVec2::ZERO);
         assert_eq!(menu.chosen(), None);
-        let actions: Vec<Action> = rows().map(|row| row.action).collect();
+        let actions: Vec<Action> = rows(Subject::Scene).map(|row| row.action).collect();
         for &action in actions.iter().chain(&actions) {
             menu.step(1);
             assert_eq!(menu.chosen(), Some(action));
@@ -148,7 +155,7 @@ mod tests {
             menu.step(-1);
             assert_eq!(menu.chosen(), Some(action));
         }
-        let mut menu = Menu::open(IVec2::ZERO);
+        let mut menu = Menu::open(Subject::Scene, IVec2::ZERO);
         menu.step(-1);
         assert_eq!(menu.chosen(), Some(Action::Leave));
     }
@@ -158,7 +165,7 @@ mod tests {
     #[test]
     fn the_pointer_selects_what_it_is_on() {
         let surface = UVec2::new(500, 500);
-        let mut menu = Menu::open(IVec2::new(20, 20));
+        let mut menu = Menu::open(Subject::Scene, IVec2::new(20, 20));
         let (rect, places) = menu.layout(surface, CELL);
         assert_eq!(rect.min, IVec2::new(20, 20));
         let middle = |row: usize| (places[row].min + places[row].max) / 2;
@@ -175,8 +182,8 @@ mod tests {
     #[test]
     fn every_row_can_be_seen_in_a_small_window() {
         let surface = UVec2::new(90, 60);
-        let mut menu = Menu::open(IVec2::new(50, 50));
-        for number in 0..rows().count() {
+        let mut menu = Menu::open(Subject::Scene, IVec2::new(50, 50));
+        for number in 0..rows(Subject::Scene).count() {
             menu.step(1);
             let (rect, places) = menu.layout(surface, CELL);
             let seen = places[number].intersection(rect).size().y;

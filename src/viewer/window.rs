@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use glam::{IVec2, UVec2};
+use glam::{DVec2, IVec2, UVec2};
 use glow::HasContext as _;
 use glutin::config::Config;
 use glutin::context::{
@@ -20,6 +20,7 @@ use glutin::surface::{Surface, SurfaceAttributesBuilder, SwapInterval, WindowSur
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle, RawDisplayHandle};
 use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event_loop::ActiveEventLoop;
+use winit::monitor::MonitorHandle;
 use winit::window::{Fullscreen, Window, WindowAttributes};
 
 use crate::image::Raster;
@@ -81,34 +82,63 @@ struct GlResources {
     context: PossiblyCurrentContext,
 }
 
+/// What a window is opened for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Opening {
+    /// The width and height of its pictures in pixels.
+    pub(super) picture: UVec2,
+    /// So many logical pixels, each way, show one of the picture.
+    pub(super) magnification: u32,
+    /// It opens with a panel beside the picture.
+    pub(super) panel: bool,
+}
+
+impl Opening {
+    /// The width and height of the window in pixels: so that the picture is magnified, or as large
+    /// as fits the monitor, and the panel has its room, where the monitor has it.
+    fn size(self, monitor: Option<UVec2>, scale: f64) -> UVec2 {
+        let wanted = self.picture.as_dvec2() * f64::from(self.magnification) * scale;
+        let most = monitor.map_or(DVec2::INFINITY, |monitor| monitor.as_dvec2());
+        let size = wanted * (most / wanted).min_element().min(1.0);
+        let size = size.round().max(DVec2::ONE).as_uvec2();
+        if !self.panel {
+            return size;
+        }
+        let shown = Placement::fit(size, self.picture).size;
+        let size = with_panel(size, self.picture, shown.x, panel::wanted(cell(scale)));
+        monitor.map_or(size, |monitor| size.min(monitor))
+    }
+}
+
+/// The width and height of a character in pixels: 7 × 14 logical ones.
+fn cell(scale: f64) -> UVec2 {
+    let width = (7.0 * scale).round().max(1.0) as u32;
+    UVec2::new(width, 2 * width)
+}
+
 impl GlWindow {
-    /// Opens a window for pictures of `picture`, width and height in pixels: so many logical pixels
-    /// where they fit the monitor, else the largest rectangle of this aspect that does.
+    /// Opens a window.
     pub(super) fn open(
         event_loop: &ActiveEventLoop,
-        picture: UVec2,
+        opening: Opening,
     ) -> Result<GlWindow, ViewerError> {
         let monitor = event_loop
             .primary_monitor()
             .or_else(|| event_loop.available_monitors().next())
-            .map(|monitor| monitor.size().to_logical::<f64>(monitor.scale_factor()))
-            .filter(|size| size.width >= 1.0 && size.height >= 1.0);
-        let size = picture.as_dvec2();
-        let part = monitor.map_or(1.0, |monitor| {
-            (monitor.width / size.x)
-                .min(monitor.height / size.y)
-                .min(1.0)
-        });
-        let size = size * part;
+            .filter(|monitor| monitor.size().width > 0 && monitor.size().height > 0);
+        let scale = monitor.as_ref().map_or(1.0, MonitorHandle::scale_factor);
+        let monitor =
+            monitor.map(|monitor| UVec2::new(monitor.size().width, monitor.size().height));
+        let size = opening.size(monitor, scale).as_dvec2() / scale;
         let attributes = Window::default_attributes()
             .with_title("firsthit")
             .with_window_icon(icon())
-            .with_inner_size(LogicalSize::new(size.x.max(1.0), size.y.max(1.0)));
+            .with_inner_size(LogicalSize::new(size.x, size.y));
         #[cfg(all(unix, not(target_vendor = "apple")))]
         let attributes = named(attributes);
         let mut reasons = Vec::new();
         for prefer_egl in [false, true] {
-            match GlWindow::open_with(event_loop, &attributes, picture, prefer_egl) {
+            match GlWindow::open_with(event_loop, &attributes, opening, prefer_egl) {
                 Ok(gl_window) => return Ok(gl_window),
                 Err(Failure::OpenGl(reason)) if !reasons.contains(&reason) => reasons.push(reason),
                 Err(Failure::OpenGl(_)) => {}
@@ -121,7 +151,7 @@ impl GlWindow {
     fn open_with(
         event_loop: &ActiveEventLoop,
         attributes: &WindowAttributes,
-        picture: UVec2,
+        opening: Opening,
         prefer_egl: bool,
     ) -> Result<GlWindow, Failure> {
         let create = |config: Option<&Config>| match config {
@@ -149,9 +179,9 @@ impl GlWindow {
             x11: X11Window::of(&window),
             window,
             surface: UVec2::new(size.width, size.height),
-            picture,
+            picture: opening.picture,
             zoom: Zoom::default(),
-            panel: false,
+            panel: opening.panel,
             growth: Growth::default(),
             checks_left: CHECKS,
             presented: 0,
@@ -447,8 +477,7 @@ impl GlWindow {
 
     /// The width and height of a character in pixels: 7 × 14 logical ones.
     pub(super) fn cell(&self) -> UVec2 {
-        let width = (7.0 * self.window.scale_factor()).round().max(1.0) as u32;
-        UVec2::new(width, 2 * width)
+        cell(self.window.scale_factor())
     }
 
     /// The pixel of the picture, column and row, that the pixel `window` of the window shows.

@@ -85,6 +85,13 @@ impl Program {
         })
     }
 
+    /// All lines on standard output, once it has ended.
+    pub fn all_lines(&self) -> Vec<String> {
+        let mut seen = self.seen.borrow_mut();
+        seen.extend(self.lines.iter());
+        seen.clone()
+    }
+
     /// What its main thread has done so far: the times that it was put to sleep or to wait, and its
     /// ticks of processor time.
     fn activity(&self) -> Vec<String> {

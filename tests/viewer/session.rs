@@ -65,23 +65,38 @@ impl Session {
     /// The same on an Xvfb that runs, with further variables in the program's environment.
     pub fn on(xvfb: Xvfb, arguments: &[&str], environment: &[(&str, &str)]) -> Session {
         let folder = tempfile::tempdir().unwrap();
+        let session = Session::starting(xvfb, folder, arguments, environment);
+        session.program.line("first frame");
+        session.opened()
+    }
+
+    /// The program, which is just starting in `folder` and need not say that it has a window.
+    pub fn starting(
+        xvfb: Xvfb,
+        folder: TempDir,
+        arguments: &[&str],
+        environment: &[(&str, &str)],
+    ) -> Session {
         let (connection, screen) = x11rb::connect(Some(&xvfb.display)).unwrap();
         let root = connection.setup().roots[screen].root;
         let display = ("DISPLAY", xvfb.display.as_str());
         let environment = [environment, &[display]].concat();
         let program = Program::start(folder.path(), arguments, &environment);
-        let mut session = Session {
+        Session {
             program,
             connection,
             root,
             window: x11rb::NONE,
             xvfb: Some(xvfb),
             folder,
-        };
-        session.program.line("first frame");
-        session.window = wait_for("the window", || session.find());
-        session.focus();
-        session
+        }
+    }
+
+    /// The same once its window can be seen, with the keyboard.
+    pub fn opened(mut self) -> Session {
+        self.window = wait_for("the window", || self.find());
+        self.focus();
+        self
     }
 
     /// The window of the program, once it can be seen.

@@ -47,8 +47,10 @@ impl App<'_> {
                 self.front.hud.information = !self.front.hud.information;
                 self.front.touch();
             }
-            // Those of the window itself.
-            Action::Copy
+            // Those of the window itself, and of another one.
+            Action::Show(_)
+            | Action::ShowNext
+            | Action::Copy
             | Action::Menu
             | Action::Help
             | Action::Fit

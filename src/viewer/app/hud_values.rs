@@ -4,7 +4,7 @@ use super::App;
 use crate::Stage;
 use crate::viewer::action::Action;
 use crate::viewer::content::Content;
-use crate::viewer::hud::HudValues;
+use crate::viewer::hud::{HudValues, Part, VALUES};
 use crate::viewer::information::{information, name_pixel};
 
 impl App<'_> {
@@ -18,7 +18,12 @@ impl App<'_> {
             ..HudValues::default()
         };
         if self.front.hud.information {
-            values.information = information(traced, self.size, self.times);
+            values.parts.push(Part {
+                heading: "Information",
+                text: information(traced, self.size, self.times),
+                hanging: VALUES,
+                scale: None,
+            });
         }
         if self.front.hud.names_pixels()
             && let Some(place) = self.front.pointer.place()
@@ -33,11 +38,17 @@ impl App<'_> {
         if let Content::Errors(_, errors) = &self.content
             && !self.content.is_stand_in()
         {
-            values.errors = Some(errors.text(&traced.frame, self.size));
+            let mut wrong = Vec::new();
             if let Some(compared) = &errors.done {
                 values.rings.extend(&compared.rings);
-                values.wrong.extend(&compared.wrong);
+                wrong.extend(&compared.wrong);
             }
+            values.parts.push(Part {
+                heading: "Errors",
+                text: errors.text(&traced.frame, self.size),
+                hanging: 2,
+                scale: Some(wrong),
+            });
         }
         values.on.push(Action::Stage(self.stage));
         for (on, action) in [

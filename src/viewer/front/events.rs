@@ -96,7 +96,7 @@ impl Front {
             modifiers: self.modifiers,
             repeat: event.repeat,
         };
-        self.act(event_loop, press.action()?)
+        self.act(event_loop, press.action(self.hud.subject())?)
     }
 
     /// Closes what is open, else leaves full screen; whether there was either.
