@@ -323,12 +323,23 @@ fn what_cannot_be_compared_is_one_line() {
             "{line}: {message}"
         );
     }
-    for line in [
-        "a.exr",
-        "a.exr a.exr -o heat.exr",
-        "a.exr a.exr --threshold -1",
+    for (line, says) in [
+        ("a.exr", "<B>"),
+        (
+            "a.exr a.exr -o heat.exr",
+            "a false-colour picture is a .png",
+        ),
+        (
+            "a.exr a.exr --threshold -1",
+            "a whole number from 0 to 4294967295 is needed",
+        ),
+        (
+            "a.exr a.exr --threshold 1.5",
+            "a whole number from 0 to 4294967295 is needed",
+        ),
     ] {
-        failed(&folder, line, 2);
+        let message = failed(&folder, line, 2);
+        assert!(message.contains(says), "{line}: {message}");
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use firsthit::image::Raster;
 use tempfile::TempDir;
 
 use crate::helpers::{
@@ -120,6 +121,26 @@ fn what_a_short_file_says_of_its_size_takes_no_memory() {
         let message = failed(&limited.output().unwrap(), 1, &line);
         assert!(message.contains("it ends before"), "{message}");
     }
+}
+
+#[test]
+fn a_picture_that_there_is_no_memory_for_is_named() {
+    let folder = folder();
+    let path = folder.path().join("a.exr");
+    Raster::new(1, 10000).unwrap().save(&path).unwrap();
+    // As many rows of more pixels.
+    let mut file = fs::read(&path).unwrap();
+    let window = b"dataWindow\0box2i\0\x10\0\0\0";
+    let mut places = file.windows(window.len());
+    let place = places.position(|bytes| bytes == window).unwrap() + window.len();
+    file[place + 8..][..4].copy_from_slice(&16383_i32.to_le_bytes());
+    fs::write(&path, file).unwrap();
+    let line = "compare a.exr a.exr";
+    let mut limited = program_after("ulimit -v 1000000", &folder, line);
+    let said = failed(&limited.output().unwrap(), 1, line);
+    let expected =
+        "firsthit: a.exr: not enough memory for 16384 × 10000 pixels: give a smaller picture\n";
+    assert_eq!(said, expected);
 }
 
 #[test]

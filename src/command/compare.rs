@@ -41,12 +41,13 @@ pub(crate) struct Arguments {
     /// picture with a whole one; if not given, a pixel that one of them lacks counts as black
     #[arg(long)]
     overlap: bool,
-    /// Say how different they look to whoever flips between them, too: the mean error of FLIP, from
-    /// 0 to 1, of samples as an sRGB display shows them. It takes seconds for a large picture
+    /// Compute the mean error of FLIP, too, from 0 to 1: how different they look to whoever flips
+    /// between them. Samples are taken as an sRGB display shows them, so that a renderer's light has
+    /// to be encoded before
     #[arg(long)]
     flip: bool,
-    /// The pixels per degree of the visual field, for FLIP; those of a display of 3840 pixels, seen
-    /// from as far away as it is wide, if not given: 67.02
+    /// Pixels per degree of the visual field, for --flip; 67.02 if not given, those of a display of
+    /// 3840 pixels that is seen from as far away as it is wide
     #[arg(long, value_name = "N", requires = "flip", allow_hyphen_values = true, value_parser = pixels_per_degree)]
     pixels_per_degree: Option<f64>,
     /// A .png to write: where they differ and how much, in false colours above their scale
@@ -57,7 +58,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH")]
     json: Option<PathBuf>,
     /// Fail where a sample is further off than this many f32 steps, or a NaN on one side only
-    #[arg(long, value_name = "ULP")]
+    #[arg(long, value_name = "ULP", allow_hyphen_values = true, value_parser = steps)]
     threshold: Option<u32>,
     /// Fail where a sample is further off than this, or a NaN on one side only
     #[arg(long, value_name = "ABS", allow_hyphen_values = true, value_parser = most)]
@@ -85,6 +86,12 @@ struct Compared {
 struct Flip {
     mean: f64,
     pixels_per_degree: f64,
+}
+
+/// The most f32 steps that pass.
+fn steps(text: &str) -> Result<u32, &'static str> {
+    text.parse()
+        .map_err(|_| "a whole number from 0 to 4294967295 is needed")
 }
 
 /// The largest error that passes.

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use ::exr::compression::Compression;
 
-use super::{ImageError, MAX_SIZE, Raster, Window};
+use super::{MAX_SIZE, Raster, Window};
 pub use format::InputFormat;
 
 /// A file that no picture can be read from. Each message is one line.
@@ -23,7 +23,7 @@ pub use format::InputFormat;
 #[non_exhaustive]
 pub enum LoadError {
     /// The extension names no format that can be read.
-    #[error("{}: this extension names no picture that can be read: choose an .exr, .pfm, .png or .ppm", .0.display())]
+    #[error("{}: this extension names no picture that can be read: convert it to .exr or .pfm (floats), .png or .ppm", .0.display())]
     Extension(PathBuf),
     /// The system does not let it be read.
     #[error("{}: cannot be read: {reason}: give the path of a picture", path.display())]
@@ -84,13 +84,15 @@ pub enum LoadError {
     /// alpha is not 1, or the largest whole number.
     #[error("{}: some pixels are transparent: give an opaque picture, or ignore its alpha (--ignore-alpha)", .0.display())]
     Transparent(PathBuf),
-    /// There is not enough memory for it.
-    #[error("{}: {reason}", path.display())]
-    Image {
+    /// There is not enough memory for three floats a pixel of it.
+    #[error("{}: not enough memory for {width} × {height} pixels: give a smaller picture", path.display())]
+    Memory {
         /// The file.
         path: PathBuf,
-        /// Why there can be no such picture.
-        reason: ImageError,
+        /// Its pixels in a row.
+        width: u32,
+        /// Its rows.
+        height: u32,
     },
 }
 
@@ -212,9 +214,10 @@ impl Raster {
                 height,
             },
             Problem::Transparent => LoadError::Transparent(path.to_owned()),
-            Problem::Image(reason) => LoadError::Image {
+            Problem::Memory(width, height) => LoadError::Memory {
                 path: path.to_owned(),
-                reason,
+                width,
+                height,
             },
         })
     }
@@ -231,7 +234,7 @@ enum Problem {
     NoLayer(String, String),
     Size(usize, usize),
     Transparent,
-    Image(ImageError),
+    Memory(u32, u32),
 }
 
 /// The width and the height that a file says it has: checked before anything of that size is
@@ -246,5 +249,5 @@ fn checked_size(width: usize, height: usize) -> Result<[u32; 2], Problem> {
 /// A black picture of that size.
 fn black(width: usize, height: usize) -> Result<Raster, Problem> {
     let [width, height] = checked_size(width, height)?;
-    Raster::new(width, height).map_err(Problem::Image)
+    Raster::new(width, height).map_err(|_| Problem::Memory(width, height))
 }

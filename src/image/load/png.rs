@@ -6,7 +6,6 @@ use std::io::{self, BufReader};
 use ::png::{ColorType, Decoder, DecodingError, Transformations};
 
 use super::{LoadOptions, LoadedImage, Problem, black};
-use crate::image::ImageError;
 use crate::memory;
 
 impl From<DecodingError> for Problem {
@@ -35,7 +34,7 @@ pub(super) fn read(file: BufReader<File>, options: &LoadOptions) -> Result<Loade
         );
         return Err(Problem::Damaged(reason));
     }
-    let too_large = || Problem::Image(ImageError::Memory(width, height));
+    let too_large = || Problem::Memory(width, height);
     let mut bytes = Vec::new();
     let length = reader.output_buffer_size().ok_or_else(too_large)?;
     memory::reserve(&mut bytes, length).map_err(|_| too_large())?;

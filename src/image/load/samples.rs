@@ -1,7 +1,7 @@
 //! The samples of a picture, one after the other.
 
 use super::{Problem, checked_size};
-use crate::image::{ImageError, Raster};
+use crate::image::Raster;
 use crate::memory;
 
 /// How many samples there is room for at first.
@@ -44,14 +44,14 @@ impl Samples {
 
     /// The picture, whose rows came from the bottom.
     pub(super) fn image_from_bottom(self) -> Result<Raster, Problem> {
-        let mut image = Raster::new(self.width, self.height).map_err(Problem::Image)?;
+        let mut image = Raster::new(self.width, self.height).map_err(|_| self.too_large())?;
         image.samples_mut().copy_from_slice(&self.samples);
         Ok(image)
     }
 
     /// The picture, whose rows came from the top.
     pub(super) fn image_from_top(self) -> Result<Raster, Problem> {
-        let mut image = Raster::new(self.width, self.height).map_err(Problem::Image)?;
+        let mut image = Raster::new(self.width, self.height).map_err(|_| self.too_large())?;
         let rows = self.samples.chunks_exact(3 * self.width as usize);
         for (to, from) in image.rows_from_top_mut().zip(rows) {
             to.copy_from_slice(from);
@@ -60,6 +60,6 @@ impl Samples {
     }
 
     fn too_large(&self) -> Problem {
-        Problem::Image(ImageError::Memory(self.width, self.height))
+        Problem::Memory(self.width, self.height)
     }
 }
