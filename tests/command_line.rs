@@ -534,20 +534,14 @@ fn a_capture_into_a_closed_pipe_ends() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_picture_that_standard_output_cannot_take_is_a_failure() {
-    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-    let terminal = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
-    grantpt(&terminal).unwrap();
-    unlockpt(&terminal).unwrap();
-    let name = ptsname(&terminal, Vec::new())
-        .unwrap()
-        .into_string()
-        .unwrap();
+    let full = File::options().write(true).open("/dev/full").unwrap();
+    let (_screen, terminal) = helpers::terminal();
     for stream in STREAMS {
         for (device, said) in [
-            ("/dev/full", "standard output cannot be written: "),
-            (&*name, "a terminal shows no pictures: "),
+            (&full, "standard output cannot be written: "),
+            (&terminal, "a terminal shows no pictures: "),
         ] {
-            let device = File::options().read(true).write(true).open(device).unwrap();
+            let device = device.try_clone().unwrap();
             let line = format!("capture --stage 7 --size 200 --through none -o - {stream}");
             let output = program(&folder(), &line).stdout(device).output().unwrap();
             let message = failed(&output, &line);

@@ -9,6 +9,8 @@ mod program;
 mod random;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod samples;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod terminal;
 
 use std::fs;
 use std::path::Path;
@@ -33,6 +35,8 @@ pub(crate) use program::{
 pub(crate) use random::Random;
 #[cfg(all(feature = "program", target_os = "linux"))]
 pub(crate) use samples::{compiled, interpreted};
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use terminal::terminal;
 
 /// A frame as a new tracer with one thread makes it.
 pub(crate) fn trace(kernel: Kernel, scene: &Scene, stage: Stage, alpha: f64, size: u32) -> Image {

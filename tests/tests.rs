@@ -54,6 +54,8 @@ mod scene_files;
 mod screen;
 mod stability;
 mod stages;
+#[cfg(all(feature = "program", target_os = "linux"))]
+mod terminal;
 mod ties;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod whole_files;

@@ -25,7 +25,9 @@ use job::{Job, Stream, StreamFormat, count, numbered};
 
 /// How ffmpeg makes a film of the frames.
 const EXAMPLE: &str = "A film, by another program:
-  firsthit capture --stage 7 --frames 0..20 -o - --format rgb24 | ffmpeg -f rawvideo -pix_fmt rgb24 -s 500x500 -r 5 -i - -pix_fmt yuv420p film.mp4";
+  firsthit capture --stage 7 --frames 0..20 -o - --format rgb24 |
+  ffmpeg -f rawvideo -pix_fmt rgb24 -s 500x500 -r 5 -i - \\
+  -pix_fmt yuv420p film.mp4";
 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
