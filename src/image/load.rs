@@ -4,6 +4,7 @@ mod exr;
 mod format;
 mod layers;
 mod pfm;
+mod pixels;
 mod png;
 mod ppm;
 mod samples;
@@ -138,7 +139,7 @@ impl LoadedImage {
     }
 
     /// A picture of floats, all that its file holds.
-    pub(super) fn of_floats(image: Raster) -> LoadedImage {
+    fn of_floats(image: Raster) -> LoadedImage {
         let corner = [0, 0];
         let size = [image.width(), image.height()];
         LoadedImage {
