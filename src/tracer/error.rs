@@ -40,7 +40,7 @@ pub enum TraceError {
     #[error("the frame was cancelled: trace it again")]
     Cancelled,
     /// There is no memory for the decisions.
-    #[error("the decisions of {pixels} pixels do not fit in memory: choose a smaller picture")]
+    #[error("not enough memory for the decisions of {pixels} pixels: choose a smaller picture")]
     Memory {
         /// N².
         pixels: usize,
