@@ -39,6 +39,7 @@ fn is_harmless(words: &[&str]) -> bool {
     };
     is_quick
         && !has("--program")
+        && !has("--show")
         && words.iter().all(|word| {
             let is_short = |number: &str| number.len() < 3;
             !word.contains(['/', '\\', ':'])
