@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     overlap: bool,
     /// Compute the mean error of FLIP, too, from 0 to 1: how different they look to whoever flips
-    /// between them. Samples are taken as an sRGB display shows them, so that a renderer's light has
-    /// to be encoded before
+    /// between them. Samples are taken as an sRGB display shows them, so that a renderer's light
+    /// has to be encoded before
     #[arg(long)]
     flip: bool,
     /// Pixels per degree of the visual field, for --flip; 67.02 if not given, those of a display of

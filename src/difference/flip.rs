@@ -1,9 +1,10 @@
 //! FLIP: how different two pictures look to whoever flips between them.
 //!
-//! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström and M. D. Fairchild: FLIP: A
-//! Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer Graphics and
-//! Interactive Techniques 3(2), 2020. Its sections are cited here. Everything is computed in f64, by
-//! arithmetic and `libm`: a mean is the same number on every machine.
+//! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström and M. D. Fairchild: FLIP:
+//! A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer Graphics and
+//! Interactive Techniques 3(2), 2020, <https://doi.org/10.1145/3406183>. The constants are those of
+//! the published code. Everything is computed in f64, by arithmetic and `libm`: a mean is the same
+//! number on every machine.
 
 mod color;
 mod filters;
@@ -112,8 +113,8 @@ fn in_bands(rows: usize, band: impl Fn(Range<usize>) -> Vec<f64> + Sync) -> Vec<
     })
 }
 
-/// The error of a pixel, section 4.3: that of its colours, and larger where edges or points of
-/// luminance differ.
+/// The error of a pixel, the paper's final difference: that of its colours, and larger where edges
+/// or points of luminance differ.
 fn error(a: &Seen, b: &Seen, colors: &ColorSpace) -> f64 {
     let edges = (a.edge - b.edge).abs();
     let points = (a.point - b.point).abs();

@@ -5,7 +5,8 @@ use std::os::fd::OwnedFd;
 
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
-/// A terminal: the end from which is read what it would show, and the device that programs write to.
+/// A terminal: the end from which is read what it would show, and the device that programs write
+/// to.
 pub(crate) fn terminal() -> (OwnedFd, File) {
     let terminal = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
     grantpt(&terminal).unwrap();

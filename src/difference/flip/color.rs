@@ -29,8 +29,8 @@ impl ColorSpace {
         space
     }
 
-    /// What a sample triple of a display stands for as opponents: luminance, red against green, blue
-    /// against yellow. They are those of YCxCz, section 4.1, which is linear in them.
+    /// What a pixel of a display stands for as opponents: luminance, red against green, blue against
+    /// yellow. They are those of the paper's YCxCz, which scales and shifts them.
     pub(super) fn opponents(&self, pixel: &[f32]) -> [f64; 3] {
         // A NaN is black.
         let shown = |channel: usize| pixel[channel].clamp(0.0, 1.0).max(0.0);
@@ -40,7 +40,7 @@ impl ColorSpace {
     }
 
     /// The colour of opponents, where differences are as large as they seem: CIELAB, the chroma
-    /// corrected by the luminance, as section 4.1 has it from Hunt.
+    /// corrected by the lightness, as the paper has it from Hunt.
     pub(super) fn perceived(&self, [luminance, red_green, blue_yellow]: [f64; 3]) -> DVec3 {
         let xyz = DVec3::new(luminance + red_green, luminance, luminance - blue_yellow);
         let rgb = self.rgb_of_xyz * xyz;
@@ -77,7 +77,7 @@ fn lab_curve(light: f64) -> f64 {
     }
 }
 
-/// The difference HyAB of two colours, section 4.1, compressed.
+/// The difference HyAB of two colours, compressed.
 fn difference(a: DVec3, b: DVec3) -> f64 {
     let DVec3 { x, y, z } = a - b;
     libm::pow(x.abs() + (y * y + z * z).sqrt(), 0.7)

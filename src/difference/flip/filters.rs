@@ -33,8 +33,8 @@ pub(super) struct Filters {
 
 impl Filters {
     pub(super) fn new(pixels_per_degree: f64) -> Filters {
-        // The contrast that is seen, section 4.1: Gaussians a √(π/b) exp(−π² d²/b) of the distance
-        // d in degrees, by table 1.
+        // The contrast that is seen, of the paper's colour pipeline: Gaussians
+        // a √(π/b) exp(−π² d²/b) of the distance d in degrees.
         const WIDEST: f64 = 0.04;
         let sigmas = 3.0 * (WIDEST / 2.0).sqrt() / PI;
         let radius = (sigmas * pixels_per_degree).ceil();
@@ -51,7 +51,7 @@ impl Filters {
         let [first, second] = blue_yellow.each_ref().map(|part| part.iter().sum::<f64>());
         let sum = (first * first + second * second).sqrt();
 
-        // Edges and points, section 4.2: the first and the second derivative of a Gaussian.
+        // Edges and points, of its feature pipeline: the first and the second derivative of a Gaussian.
         let sigma = 0.5 * 0.082 * pixels_per_degree;
         let radius = (3.0 * sigma).ceil();
         let height = |x: f64| libm::exp(-x * x / (2.0 * sigma * sigma));
