@@ -374,6 +374,9 @@ impl App<'_> {
                     // that moves fast would never be seen.
                     if traced.frame.differs_in_angle(&self.wanted()) {
                         self.content.picture_came(traced, samples, Instant::now());
+                        if self.playback.recover() {
+                            self.retitle();
+                        }
                         self.draw_in_time(event_loop);
                     }
                 }
@@ -437,7 +440,9 @@ impl App<'_> {
                 if is_wanted {
                     self.failure_of_renderer = Some((frame.clone(), event.to_string()));
                     // A program that fails is not started again for each frame.
-                    self.stop();
+                    if self.stage == Stage::Animation {
+                        self.playback.halt();
+                    }
                     self.retitle();
                 }
                 // A picture that was cancelled is missed by nobody.

@@ -38,6 +38,8 @@ pub(super) struct Playback {
     alpha: f64,
     pace: Pace,
     paused: bool,
+    /// It is paused for want of a picture, not by a key.
+    halted: bool,
     /// α was chosen by a key and has not moved since.
     asked: bool,
     /// When α last advanced; `None` where no time counts since then.
@@ -50,6 +52,7 @@ impl Playback {
             alpha: 0.0,
             pace,
             paused: false,
+            halted: false,
             asked: false,
             last: None,
         }
@@ -101,7 +104,26 @@ impl Playback {
     /// Pauses the animation, or lets it play on.
     pub(super) fn toggle(&mut self) {
         self.paused = !self.paused;
+        self.halted = false;
         self.hold();
+    }
+
+    /// Pauses the animation until there are pictures again.
+    pub(super) fn halt(&mut self) {
+        if !self.paused {
+            self.pause();
+            self.halted = true;
+        }
+    }
+
+    /// There are pictures again: lets the animation play on, unless a key has paused it. Whether it
+    /// was halted.
+    pub(super) fn recover(&mut self) -> bool {
+        let halted = self.halted;
+        if halted {
+            self.toggle();
+        }
+        halted
     }
 
     /// A static stage begins: at α = 0, unless a key asked for another angle.
@@ -149,6 +171,7 @@ impl Playback {
     /// Stops the animation where it is.
     pub(super) fn pause(&mut self) {
         self.paused = true;
+        self.halted = false;
         self.hold();
     }
 
@@ -267,6 +290,32 @@ mod tests {
         assert_eq!(playback.alpha(), alpha);
         playback.advance(at(start, 5200));
         assert!((playback.alpha() - 0.6).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_animation_that_was_halted_plays_on_unless_a_key_paused_it() {
+        let start = Instant::now();
+        let mut playback = Playback::new(Pace::default());
+        playback.advance(start);
+        playback.advance(at(start, 200));
+        let alpha = playback.alpha();
+        playback.halt();
+        assert!(playback.paused());
+        assert!(playback.recover() && !playback.paused());
+        playback.advance(at(start, 5000));
+        assert_eq!(playback.alpha(), alpha, "no time counts in between");
+        // Paused by a key before it was halted, and after that.
+        for by_key in [Playback::toggle, Playback::pause] {
+            let mut playback = Playback::new(Pace::default());
+            by_key(&mut playback);
+            playback.halt();
+            assert!(!playback.recover() && playback.paused());
+            let mut playback = Playback::new(Pace::default());
+            playback.halt();
+            playback.pause();
+            assert!(!playback.recover() && playback.paused());
+        }
+        assert!(!playback.recover() && !playback.paused());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 use super::WATCH;
 use super::pixels::{letterboxed, wait_to_show};
 use super::program::wait_for;
-use super::session::Session;
+use super::session::{SPACE, Session};
 use super::xvfb::Xvfb;
 
 const SIZE: u32 = 300;
@@ -90,6 +90,37 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     };
     assert!(line.starts_with("firsthit: python3 flat-"), "{line}");
     assert!(line.contains("ended with status 3"), "{line}");
+}
+
+#[test]
+fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
+    let Some((mut session, path)) = view(&flat(0.5, 0.0), &[]) else {
+        return;
+    };
+    session.titled(&[" fps"]);
+    fs::write(&path, "raise SystemExit(3)").unwrap();
+    session.titled(&["paused"]);
+    fs::write(&path, flat(0.75, 0.0)).unwrap();
+    session.titled(&[" fps"]);
+    shows_grey(&session, 0.75);
+    // One that a key has paused stays so.
+    session.press(SPACE);
+    session.titled(&["paused"]);
+    fs::write(&path, "raise SystemExit(4)").unwrap();
+    wait_for("a note", || {
+        let shown = session.pixels()?;
+        let [bottom, width] = [shown.height - 20, shown.width];
+        let note = shown.part([0, bottom], [width, 20]);
+        (note.count([191; 3]) < width).then_some(())
+    });
+    fs::write(&path, flat(0.25, 0.0)).unwrap();
+    shows_grey(&session, 0.25);
+    thread::sleep(WATCH);
+    session.titled(&["paused"]);
+    session.type_keys("q");
+    let (status, errors) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(errors.lines().count(), 2, "{errors}");
 }
 
 #[test]
