@@ -10,7 +10,6 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
-use crate::image::Raster;
 use crate::screen::driver_limits;
 
 use super::action::{Action, Side, Subject};
@@ -20,18 +19,10 @@ use super::hud::{HudValues, Part, VALUES};
 use super::window::Opening;
 use super::{Event, ViewerError};
 use pair::Pair;
+pub use pair::Picture;
 
 /// Pictures of fewer pixels are magnified, in a window of up to about so many logical pixels.
 const MAGNIFIED: u32 = 512;
-
-/// A picture to be looked at.
-#[derive(Clone, Debug)]
-pub struct Picture {
-    /// What it is called: its file, perhaps.
-    pub name: String,
-    /// Its samples.
-    pub image: Raster,
-}
 
 /// Opens a window and stays until it is left.
 pub(super) fn compare(

@@ -2,7 +2,6 @@
 
 use glam::UVec2;
 
-use super::Picture;
 use crate::difference::{Difference, error_color, steps, worst};
 use crate::image::Raster;
 use crate::viewer::ViewerError;
@@ -11,6 +10,15 @@ use crate::viewer::information::color_text;
 
 /// The column of the list of pictures in which their names begin.
 pub(super) const NAMES: usize = 8;
+
+/// A picture to be looked at.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// What it is called: its file, perhaps.
+    pub name: String,
+    /// Its samples.
+    pub image: Raster,
+}
 
 pub(super) struct Pair {
     pictures: [Picture; 2],
