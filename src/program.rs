@@ -198,6 +198,22 @@ impl Program {
         }
     }
 
+    /// Checks that the program has not written more than the picture that was asked for last. One
+    /// that has is ended.
+    ///
+    /// # Errors
+    /// [`ProgramError::Picture`] where it has.
+    pub fn recheck(&mut self) -> Result<(), ProgramError> {
+        let surplus = |process: &Process| process.unasked(0);
+        match (self.process.as_ref().and_then(surplus), self.last) {
+            (Some(fault), Some(last)) => {
+                self.process = None;
+                Err(self.fault(last, fault))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn fault(&self, request: Request, fault: Fault) -> ProgramError {
         ProgramError::Picture {
             program: self.words.name().to_owned(),
@@ -240,6 +256,10 @@ impl Render for Program {
 
     fn files(&self) -> Vec<PathBuf> {
         self.files()
+    }
+
+    fn recheck(&mut self) -> Result<(), RenderError> {
+        Ok(self.recheck()?)
     }
 
     /// It ends the process that works at the picture.

@@ -94,6 +94,15 @@ pub trait Render {
         Vec::new()
     }
 
+    /// Called when the last picture has been there for a while and nothing else has been asked for.
+    ///
+    /// # Errors
+    /// [`RenderError`] where something has been found to be wrong with that picture since: such as
+    /// that a program wrote more than the picture. Nothing is, if not said otherwise.
+    fn recheck(&mut self) -> Result<(), RenderError> {
+        Ok(())
+    }
+
     /// What ends the picture that is being made: after it is called, on any thread,
     /// [`Render::render`] returns an error soon, and the next picture is made as ever. `None` where
     /// a picture that has begun has to be waited for.

@@ -539,6 +539,16 @@ fn what_comes_after_a_picture_is_told_of_that_picture() {
     let error = error.unwrap_err().to_string();
     let start = "sh p.sh: stage 6, α = 0.5, 1 × 1: wrote more to its standard output than the picture's 12 bytes: \"hello\"";
     assert!(error.starts_with(start), "{error}");
+    // Before another one is asked for, if it is looked for.
+    program
+        .ask(&scene, Stage::Reflection, 0.5, &mut image)
+        .unwrap();
+    thread::sleep(Duration::from_secs(1));
+    let error = program.recheck().unwrap_err().to_string();
+    assert!(error.starts_with(start), "{error}");
+    // It is told once, and the next picture is that of a new process.
+    program.recheck().unwrap();
+    program.ask(&scene, Stage::Shadow, 0.0, &mut image).unwrap();
 }
 
 #[test]

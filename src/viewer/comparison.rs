@@ -134,7 +134,10 @@ impl Comparing {
         let (size, threads) = (options.size, options.threads);
         let progress = Arc::<Mutex<Progress>>::default();
         let theirs = progress.clone();
-        let worker = Worker::start("comparing", wake, move |Task(frame, image), reply| {
+        let worker = Worker::start("comparing", wake, move |task, reply| {
+            let Some(Task(frame, image)) = task else {
+                return;
+            };
             let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
             let mut trace = |kernel| {
                 let mut image = Image::new(size)?;

@@ -318,6 +318,16 @@ impl Pictures {
         }
     }
 
+    /// What has been found to be wrong with the last picture since it was made, if anything: it is
+    /// made again where it is wanted again.
+    fn recheck(&mut self) -> Option<Reply> {
+        let Engine::Given { renderer, .. } = &mut self.engine else {
+            return None;
+        };
+        let reason = renderer.recheck().err()?;
+        Some(Reply::Refused(self.last.take()?.frame, reason))
+    }
+
     /// A picture that nobody else holds, taken out of the pool: the last one if possible, or else a
     /// new one.
     fn free_picture(&mut self) -> Result<Arc<Image>, ViewerError> {
@@ -373,7 +383,11 @@ impl Tracing {
         let workers = all.into_iter().map(|mut pictures| {
             let first = pictures.number;
             Worker::start("tracing", wake.clone(), move |task, reply| {
-                if let Some(answer) = pictures.answer(task) {
+                let answer = match task {
+                    Some(task) => pictures.answer(task),
+                    None => pictures.recheck(),
+                };
+                if let Some(answer) = answer {
                     reply((pictures.number - first, answer));
                 }
             })

@@ -5,6 +5,10 @@ use std::io;
 use std::sync::mpsc::{self, Receiver};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+/// How long a worker has nothing to do after a task before it is idle.
+const IDLE: Duration = Duration::from_millis(200);
 
 /// The thread, seen from the window's side.
 pub(super) struct Worker<Task, Reply> {
@@ -28,43 +32,62 @@ struct Tasks<Task> {
     closed: bool,
 }
 
+/// What a worker does next.
+enum Next<Task> {
+    Queued(Task),
+    Requested(Task),
+    /// There has been nothing to do for a while.
+    Idle,
+    /// There will be no more.
+    Nothing,
+}
+
 impl<Task> Inbox<Task> {
     fn lock(&self) -> MutexGuard<'_, Tasks<Task>> {
         // No code that holds the lock can panic halfway.
         self.tasks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next task, waited for, and whether it was queued; `None` once there will be no more.
-    fn next(&self) -> Option<(Task, bool)> {
+    /// What there is to do next, waited for. A worker that `has_worked` may have become idle.
+    fn next(&self, has_worked: bool) -> Next<Task> {
         let mut tasks = self.lock();
+        let mut idle = false;
         loop {
             if let Some(task) = tasks.queue.pop_front() {
-                return Some((task, true));
+                return Next::Queued(task);
             }
             if tasks.closed {
-                return None;
+                return Next::Nothing;
             }
             if let Some(task) = tasks.request.take() {
-                return Some((task, false));
+                return Next::Requested(task);
             }
-            tasks = self
-                .changed
-                .wait(tasks)
-                .unwrap_or_else(PoisonError::into_inner);
+            if idle {
+                return Next::Idle;
+            }
+            if has_worked {
+                let waited = self.changed.wait_timeout(tasks, IDLE);
+                let (woken, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+                (tasks, idle) = (woken, timeout.timed_out());
+            } else {
+                let waited = self.changed.wait(tasks);
+                tasks = waited.unwrap_or_else(PoisonError::into_inner);
+            }
         }
     }
 }
 
 impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
     /// Starts it. `work` does a task and may answer as often as it likes; after each answer `wake`
-    /// is called, on the worker's thread.
+    /// is called, on the worker's thread. Once there has been nothing to do for a while after a
+    /// task, `work` is called without one.
     ///
     /// # Errors
     /// Where the system has no thread left.
     pub(super) fn start(
         name: &str,
         wake: impl Fn() + Send + 'static,
-        mut work: impl FnMut(Task, &mut dyn FnMut(Reply)) + Send + 'static,
+        mut work: impl FnMut(Option<Task>, &mut dyn FnMut(Reply)) + Send + 'static,
     ) -> io::Result<Worker<Task, Reply>> {
         let inbox = Arc::new(Inbox {
             tasks: Mutex::new(Tasks {
@@ -80,7 +103,15 @@ impl<Task: Send + 'static, Reply: Send + 'static> Worker<Task, Reply> {
         let thread = thread::Builder::new()
             .name(name.to_owned())
             .spawn(move || {
-                while let Some((task, is_queued)) = theirs.next() {
+                let mut has_worked = false;
+                loop {
+                    let (task, is_queued) = match theirs.next(has_worked) {
+                        Next::Queued(task) => (Some(task), true),
+                        Next::Requested(task) => (Some(task), false),
+                        Next::Idle => (None, false),
+                        Next::Nothing => return,
+                    };
+                    has_worked = task.is_some();
                     work(task, &mut |reply| {
                         // Nobody listens once the window is closed.
                         let _ = sender.send(reply);
@@ -147,8 +178,10 @@ mod tests {
                 let _ = woken.send(());
             },
             move |task, reply| {
-                let _ = wait.recv();
-                reply(task);
+                if let Some(task) = task {
+                    let _ = wait.recv();
+                    reply(task);
+                }
             },
         );
         (worker.unwrap(), go, wakes)
@@ -172,6 +205,25 @@ mod tests {
             wakes.recv().unwrap();
             assert_eq!(worker.reply(), Some(expected));
         }
+    }
+
+    #[test]
+    fn a_worker_is_idle_once_after_its_last_task() {
+        let worker = Worker::start("test", || {}, |task, reply| reply(task)).unwrap();
+        let answered = |most: Duration| {
+            let reply = worker.replies.recv_timeout(most);
+            reply.ok()
+        };
+        assert_eq!(answered(3 * IDLE), None, "it has done nothing yet");
+        for task in 0..3 {
+            worker.request(task);
+            assert_eq!(answered(10 * IDLE), Some(Some(task)));
+        }
+        assert_eq!(answered(10 * IDLE), Some(None));
+        assert_eq!(answered(3 * IDLE), None);
+        worker.enqueue(3);
+        assert_eq!(answered(10 * IDLE), Some(Some(3)));
+        assert_eq!(answered(10 * IDLE), Some(None));
     }
 
     #[test]

@@ -124,6 +124,38 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
 }
 
 #[test]
+fn what_a_program_writes_after_its_picture_is_told_though_nothing_else_is_asked_for() {
+    let text = flat(0.5, 0.0) + "    time.sleep(0.1)\n    print('done', flush=True)\n";
+    let Some((mut session, _)) = view(&text, &["--stage", "6"]) else {
+        return;
+    };
+    for stage in ["6", "5"] {
+        session.type_keys(stage);
+        session.titled(&[&format!("firsthit — {stage} ")]);
+        shows_grey(&session, 0.5);
+        wait_for("a note", || {
+            let shown = session.pixels()?;
+            let [bottom, width] = [shown.height - 20, shown.width];
+            let note = shown.part([0, bottom], [width, 20]);
+            (note.count([128; 3]) < width).then_some(())
+        });
+        // It is not started again and again.
+        session.program.sleeps();
+    }
+    session.screenshot("viewer-surplus.png");
+    session.type_keys("q");
+    let (status, errors) = session.program.ended();
+    assert_eq!(status.code(), Some(0));
+    let lines: Vec<&str> = errors.lines().collect();
+    let [first, second] = lines[..] else {
+        panic!("{errors}");
+    };
+    for (line, stage) in [(first, "stage 6"), (second, "stage 5")] {
+        assert!(line.contains(stage) && line.contains("\"done"), "{line}");
+    }
+}
+
+#[test]
 fn a_program_that_fails_from_the_start_is_shown_once_it_is_mended() {
     let Some((mut session, path)) = view("print('hello')", &["--stage", "2"]) else {
         return;
