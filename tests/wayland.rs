@@ -26,6 +26,7 @@ use std::time::Duration;
 
 use firsthit::{Kernel, Scene, Stage, Tracer};
 use mouse::Mouse;
+use pixels::{letterboxed, traced, wait_to_show};
 use program::wait_for;
 use sway::{HEIGHT, Sway, WIDTH};
 
@@ -140,4 +141,31 @@ fn the_death_of_the_compositor_is_one_line() {
         assert_eq!(errors.lines().count(), 1, "{errors}");
         assert!(errors.contains("the display went away"), "{errors}");
     }
+}
+
+#[test]
+#[ignore = "needs sway, wtype and grim"]
+fn two_pictures_are_shown_beside_the_panel() {
+    let sway = Sway::start();
+    let pictures = [Stage::Shadow, Stage::Reflection].map(|stage| traced(100, stage, 0.0));
+    for (picture, name) in pictures.iter().zip(["a.exr", "b.exr"]) {
+        picture.save(sway.folder().join(name)).unwrap();
+    }
+    let mut compare = sway.begin(&["compare", "a.exr", "b.exr", "--show"]);
+    // What the panel leaves of the display.
+    let width = WIDTH - 56 * 7;
+    let shows = |picture| {
+        wait_to_show(
+            || Some(sway.pixels().part([0, 0], [width, HEIGHT])),
+            |width, height| letterboxed(picture, width, height),
+        );
+    };
+    let [a, b] = &pictures;
+    shows(a);
+    sway.type_keys("2");
+    shows(b);
+    compare.sleeps();
+    sway.type_keys("q");
+    let (status, errors) = compare.ended();
+    assert_eq!((status.code(), errors.as_str()), (Some(0), ""));
 }

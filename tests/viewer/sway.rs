@@ -3,7 +3,7 @@
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, chown};
 use std::os::unix::process::CommandExt as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
 use firsthit::Stage;
@@ -120,15 +120,31 @@ impl Sway {
 
     /// Opens the viewer, alone on the whole display, and waits for its first frame.
     pub fn open(&self, arguments: &[&str]) -> Program {
+        let program = self.begin(arguments);
+        program.line("first frame");
+        program
+    }
+
+    /// Starts the program in the folder of [`Sway::folder`], which need not say that it has a
+    /// window.
+    pub fn begin(&self, arguments: &[&str]) -> Program {
         let display = self.display();
         let folder = self.folder.path().to_str().unwrap();
         let environment = [
             ("WAYLAND_DISPLAY", display.as_str()),
             ("XDG_RUNTIME_DIR", folder),
         ];
-        let program = Program::start(self.folder.path(), arguments, &environment);
-        program.line("first frame");
-        program
+        Program::start(self.folder.path(), arguments, &environment)
+    }
+
+    /// Where its programs start.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// What the display shows.
+    pub fn pixels(&self) -> Pixels {
+        portable_pixmap(&self.printed("grim", &["-t", "ppm", "-"]))
     }
 
     /// Types `keys`.
@@ -150,7 +166,7 @@ impl Sway {
     pub fn shows(&self, stage: Stage) {
         let picture = traced(500, stage, 0.0);
         wait_to_show(
-            || Some(portable_pixmap(&self.printed("grim", &["-t", "ppm", "-"]))),
+            || Some(self.pixels()),
             |_, _| letterboxed(&picture, WIDTH, HEIGHT),
         );
     }
