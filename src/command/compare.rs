@@ -146,7 +146,7 @@ impl Arguments {
         let pictures = [picture(&self.a, a), picture(&self.b, b)];
         viewer::compare(pictures, &mut |event| match event {
             Event::Opened => opening = None,
-            Event::Differs { .. } => super::say(&event.to_string()),
+            Event::Differs { .. } | Event::NotSaved(_) => super::say(&event.to_string()),
             _ => {}
         })?;
         Ok(())

@@ -103,6 +103,26 @@ impl Binding {
         }
     }
 
+    const fn save_png(detail: &'static str) -> Binding {
+        Binding {
+            characters: &['s'],
+            physical_keys: &[C::KeyS],
+            shift: Some(false),
+            detail,
+            ..Binding::new("S", "Save PNG", A::SavePng)
+        }
+    }
+
+    const fn save_exr(detail: &'static str) -> Binding {
+        Binding {
+            characters: &['s'],
+            physical_keys: &[C::KeyS],
+            shift: Some(true),
+            detail,
+            ..Binding::new("Shift+S", "Save EXR", A::SaveExr)
+        }
+    }
+
     const fn show(
         side: Side,
         (keys, label): (&'static str, &'static str),
@@ -146,6 +166,8 @@ const OF_PICTURES: &[Binding] = &[
         detail: "A, B, their difference in turn",
         ..Binding::new("Tab", "Next picture", A::ShowNext)
     },
+    Binding::save_png("what is shown, in 8 bits"),
+    Binding::save_exr("what is shown, every bit"),
 ];
 
 /// The actions of a window that shows a scene, and the keys they are on.
@@ -204,20 +226,8 @@ const OF_SCENES: &[Binding] = &[
         detail: "α = 0",
         ..Binding::new("0, Home", "Reset angle", A::Zero)
     },
-    Binding {
-        characters: &['s'],
-        physical_keys: &[C::KeyS],
-        shift: Some(false),
-        detail: "the picture as traced, in 8 bits",
-        ..Binding::new("S", "Save PNG", A::SavePng)
-    },
-    Binding {
-        characters: &['s'],
-        physical_keys: &[C::KeyS],
-        shift: Some(true),
-        detail: "the picture as traced, every bit",
-        ..Binding::new("Shift+S", "Save EXR", A::SaveExr)
-    },
+    Binding::save_png("the picture as traced, in 8 bits"),
+    Binding::save_exr("the picture as traced, every bit"),
     Binding {
         characters: &['e'],
         physical_keys: &[C::KeyE],

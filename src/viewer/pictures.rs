@@ -2,6 +2,8 @@
 
 mod pair;
 
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::UVec2;
@@ -10,6 +12,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
+use crate::image::{Format, SaveError};
 use crate::screen::driver_limits;
 
 use super::action::{Action, Side, Subject};
@@ -17,7 +20,8 @@ use super::desktop::event_loop;
 use super::front::{Front, POLL, Wish};
 use super::hud::{HudValues, Part, VALUES};
 use super::window::Opening;
-use super::{Event, ViewerError};
+use super::worker::Worker;
+use super::{Event, ViewerError, snapshot};
 use pair::Pair;
 pub use pair::Picture;
 
@@ -31,12 +35,24 @@ pub(super) fn compare(
 ) -> Result<(), ViewerError> {
     let started = Instant::now();
     let event_loop = event_loop()?;
-    let pair = Pair::new(pictures)?;
+    let pair = Arc::new(Pair::new(pictures)?);
     let UVec2 { x, y } = pair.size();
     driver_limits::check(u64::from(x) * u64::from(y))?;
+    let proxy = event_loop.create_proxy();
+    let wake = move || {
+        // Without an event loop nobody waits.
+        let _ = proxy.send_event(());
+    };
+    let theirs = pair.clone();
+    let saving = Worker::start("saving", wake, move |task, reply| {
+        if let Some((side, format)) = task {
+            reply(snapshot::save(theirs.image(side), "compare", format));
+        }
+    });
     let mut pictures = Pictures {
         started,
         pair,
+        saving: saving.map_err(ViewerError::Thread)?,
         shown: Side::A,
         uploaded: None,
         front: Front::new(Subject::Pictures),
@@ -44,6 +60,9 @@ pub(super) fn compare(
         failure: None,
     };
     let ended = event_loop.run_app(&mut pictures);
+    for saved in pictures.saving.finish() {
+        (pictures.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
+    }
     if let Some(failure) = pictures.failure {
         return Err(failure);
     }
@@ -54,7 +73,9 @@ pub(super) fn compare(
 
 struct Pictures<'a> {
     started: Instant,
-    pair: Pair,
+    pair: Arc<Pair>,
+    /// Writes the picture to a new file.
+    saving: Worker<(Side, Format), Result<PathBuf, SaveError>>,
     shown: Side,
     /// What the texture holds.
     uploaded: Option<Side>,
@@ -86,6 +107,15 @@ impl ApplicationHandler for Pictures<'_> {
         }
     }
 
+    fn user_event(&mut self, _event_loop: &ActiveEventLoop, (): ()) {
+        while let Some(saved) = self.saving.reply() {
+            let event = saved.map_or_else(Event::NotSaved, Event::Saved);
+            self.front.hud.say(event.to_string());
+            (self.report)(event);
+            self.front.touch();
+        }
+    }
+
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         match self.front.window_event(event_loop, event) {
             Some(Wish::Redraw) => {
@@ -94,6 +124,8 @@ impl ApplicationHandler for Pictures<'_> {
             }
             Some(Wish::Act(Action::Show(side))) => self.show(side),
             Some(Wish::Act(Action::ShowNext)) => self.show(self.shown.next()),
+            Some(Wish::Act(Action::SavePng)) => self.saving.enqueue((self.shown, Format::Png)),
+            Some(Wish::Act(Action::SaveExr)) => self.saving.enqueue((self.shown, Format::Exr)),
             Some(Wish::Explain(pixel)) => self.explain(pixel),
             // This window has no key for any other action.
             Some(Wish::Act(_)) | None => {}

@@ -303,9 +303,10 @@ impl Pictures {
             Task::Trace(_) => self
                 .picture(frame)
                 .map(|(traced, image)| Reply::Traced(traced, image)),
-            Task::Save(_, format) => self
-                .picture_in_any_case(frame)
-                .map(|(_, image)| Reply::Saved(snapshot::save(&image, frame.stage, *format))),
+            Task::Save(_, format) => self.picture_in_any_case(frame).map(|(_, image)| {
+                let what = format!("stage{}", frame.stage.number());
+                Reply::Saved(snapshot::save(&image, &what, *format))
+            }),
             Task::Explain(_, pixel, image) => self
                 .explain(frame, *pixel, image.as_deref())
                 .map(|text| Reply::Explained(*pixel, text)),

@@ -1,5 +1,7 @@
 //! `compare --show`: two pictures and their difference in a window.
 
+use std::fs;
+
 use firsthit::difference::{error_color, steps};
 use firsthit::image::Raster;
 use firsthit::{Image, Stage};
@@ -191,7 +193,7 @@ fn the_menu_and_the_keys_are_those_of_pictures() {
     let mut session = show(xvfb, folder, &[]);
     shows(&session, &a, None);
     // Keys that a scene has do nothing.
-    session.type_keys("67ek i.s+");
+    session.type_keys("67ek i.+");
     session.type_keys("h");
     wait_for("the keys", || {
         let shown = session.pixels()?.part([SIDE, 0], [PANEL_WIDTH, SIDE]);
@@ -214,7 +216,7 @@ fn the_menu_and_the_keys_are_those_of_pictures() {
     session.press(super::session::ENTER);
     session.titled(&["B: b.exr"]);
     shows(&session, &b, None);
-    assert_eq!(std::fs::read_dir(session.folder.path()).unwrap().count(), 2);
+    assert_eq!(fs::read_dir(session.folder.path()).unwrap().count(), 2);
     session.close();
     let (status, errors) = session.program.ended();
     assert_eq!((status.code(), errors.as_str()), (Some(0), ""));
@@ -308,4 +310,43 @@ fn pictures_of_any_width_and_height_keep_their_aspect() {
         let (status, errors) = session.program.ended();
         assert_eq!((status.code(), errors.as_str()), (Some(0), ""));
     }
+}
+
+#[test]
+fn what_is_shown_is_saved_without_a_word_on_standard_output() {
+    let Some(xvfb) = Xvfb::start(&[]) else {
+        return;
+    };
+    let (folder, pictures) = pictures();
+    let [a, b] = &pictures;
+    let difference = difference(&pictures);
+    let mut session = show(xvfb, folder, &[]);
+    shows(&session, a, None);
+    session.type_keys("3ss2S");
+    let folder = session.folder.path().to_owned();
+    for (picture, name) in [
+        (&difference, "firsthit-compare-0001.png"),
+        (&difference, "firsthit-compare-0002.png"),
+        (b, "firsthit-compare-0001.exr"),
+    ] {
+        let expected = folder
+            .join("expected")
+            .with_extension(&name[name.len() - 3..]);
+        picture.save(&expected).unwrap();
+        let expected = fs::read(expected).unwrap();
+        wait_for(name, || {
+            (fs::read(folder.join(name)).ok()? == expected).then_some(())
+        });
+    }
+    session.screenshot("viewer-compare-saved.png");
+    // One that is still to be written when the window closes is written.
+    session.type_keys("1sq");
+    let (status, errors) = session.program.ended();
+    assert_eq!((status.code(), errors.as_str()), (Some(0), ""));
+    assert!(folder.join("firsthit-compare-0003.png").exists());
+    let lines = session.program.all_lines();
+    assert!(
+        !lines.iter().any(|line| line.contains("saved")),
+        "{lines:?}"
+    );
 }
