@@ -29,23 +29,30 @@ impl Casters {
         hidden: &[bool],
         facing_light: &[[Ordering; 4]],
     ) -> Self {
-        let balls = bounding_balls(spheres, tetrahedra);
+        let bounds = bounding_balls(spheres, tetrahedra);
         let l = to_light.normalize();
-        let lit_faces = |(tetrahedron, facing): (&Tetrahedron, &[Ordering; 4])| {
-            [0, 1, 2, 3].map(|k: usize| facing[k].is_gt().then(|| LitFace::new(tetrahedron, k, l)))
+        let prisms: Vec<Prisms> = tetrahedra
+            .iter()
+            .zip(facing_light)
+            .map(|(tetrahedron, facing)| Prisms::new(tetrahedron, facing, l))
+            .collect();
+        let balls = |solid: usize| match solid.checked_sub(spheres.len()) {
+            None => Balls {
+                centers: std::slice::from_ref(&spheres[solid].center),
+                radius: spheres[solid].radius,
+            },
+            Some(tetrahedron) => Balls::points(&tetrahedra[tetrahedron].vertices),
         };
-        let faces: Vec<[Option<LitFace>; 4]> =
-            tetrahedra.iter().zip(facing_light).map(lit_faces).collect();
         let mut casters = Casters {
             on_spheres: vec![Vec::new(); spheres.len()],
             on_faces: vec![Default::default(); tetrahedra.len()],
         };
-        each_overlapping_pair(&balls, l.any_orthonormal_vector(), |a, b| {
+        each_overlapping_pair(&bounds, l.any_orthonormal_vector(), |a, b| {
             if hidden[a] || hidden[b] {
                 return;
             }
-            let BoundingBall { center, radius } = balls[a];
-            let other = &balls[b];
+            let BoundingBall { center, radius } = bounds[a];
+            let other = &bounds[b];
             let between = other.center - center;
             let slack = (other.center.abs() + center.abs()).element_sum() * (MARGIN - 1.0);
             let touching = (other.radius + radius) * MARGIN + slack;
@@ -58,15 +65,21 @@ impl Casters {
                 if !may {
                     continue;
                 }
+                let shadow = caster
+                    .checked_sub(spheres.len())
+                    .map(|caster| &prisms[caster].shadow);
+                let misses =
+                    |receiver: Balls<'_>| shadow.is_some_and(|shadow| shadow.misses(receiver));
                 match receiver.checked_sub(spheres.len()) {
+                    None if misses(balls(receiver)) => {}
                     None => casters.on_spheres[receiver].push(caster as u16),
                     Some(tetrahedron) => {
                         let lists = casters.on_faces[tetrahedron].iter_mut();
-                        for (list, face) in lists.zip(&faces[tetrahedron]) {
-                            if face
-                                .as_ref()
-                                .is_some_and(|face| face.may_be_shadowed_by(&balls[caster]))
-                            {
+                        for (k, (list, light)) in lists.zip(&prisms[tetrahedron].light).enumerate()
+                        {
+                            let Some(light) = light else { continue };
+                            let face = face(&tetrahedra[tetrahedron], k);
+                            if !light.misses(balls(caster)) && !misses(Balls::points(&face)) {
                                 list.push(caster as u16);
                             }
                         }
@@ -91,12 +104,92 @@ impl Casters {
     }
 }
 
-/// A face that is turned to the light. Its casters reach into the prism that stands on the face and
-/// extends toward the light.
-struct LitFace {
-    /// The planes of the prism: the face's own, and one along each of its edges. `None` where f64
-    /// does not tell which side is inside.
-    planes: [Option<PrismPlane>; 4],
+/// Balls around some points, which hold a solid or a face in their convex ball.
+#[derive(Clone, Copy)]
+struct Balls<'s> {
+    centers: &'s [DVec3],
+    radius: f64,
+}
+
+impl<'s> Balls<'s> {
+    fn points(centers: &'s [DVec3]) -> Self {
+        Balls {
+            centers,
+            radius: 0.0,
+        }
+    }
+}
+
+/// The vertices of face `k` of a tetrahedron: all but vertex `k`.
+fn face(tetrahedron: &Tetrahedron, k: usize) -> [DVec3; 3] {
+    [1, 2, 3].map(|on| tetrahedron.vertices[(k + on) % 4])
+}
+
+/// The prisms of a tetrahedron along the light.
+struct Prisms {
+    /// For each face that is turned to the light: what stands on the face toward the light. Its
+    /// casters reach into it.
+    light: [Option<Prism>; 4],
+    /// What extends from the tetrahedron away from the light. Its receivers reach into it.
+    shadow: Prism,
+}
+
+impl Prisms {
+    /// `facing` tells the sign of n·l for each face; `l` has length 1.
+    fn new(tetrahedron: &Tetrahedron, facing: &[Ordering; 4], l: DVec3) -> Self {
+        let v = tetrahedron.vertices;
+        let magnitude = v.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
+        let along_light = |from: DVec3, to: DVec3, inner: DVec3| {
+            PrismPlane::new(from, [to - from, l], inner, magnitude.max(1.0))
+        };
+        // The plane of a face, with the solid on the inner side.
+        let own = |k: usize| {
+            let [a, b, c] = face(tetrahedron, k);
+            PrismPlane::new(a, [b - a, c - a], v[k], magnitude)
+        };
+        let light = [0, 1, 2, 3].map(|k: usize| {
+            let [a, b, c] = face(tetrahedron, k);
+            let on_face = [
+                own(k).map(PrismPlane::flipped),
+                along_light(a, b, c),
+                along_light(b, c, a),
+                along_light(c, a, b),
+            ];
+            let is_lit = facing[k].is_gt();
+            is_lit.then(|| Prism(on_face.into_iter().flatten().collect()))
+        });
+        let lit = [0, 1, 2, 3]
+            .into_iter()
+            .filter(|k: &usize| facing[*k].is_gt());
+        // An edge belongs to the silhouette if both other vertices are on one side.
+        let silhouette = [
+            [0, 1, 2, 3],
+            [0, 2, 1, 3],
+            [0, 3, 1, 2],
+            [1, 2, 0, 3],
+            [1, 3, 0, 2],
+            [2, 3, 0, 1],
+        ]
+        .map(|[a, b, c, d]| {
+            along_light(v[a], v[b], v[c])
+                .filter(|plane| plane.height(v[d]).is_some_and(|height| height < 0.0))
+        });
+        let shadow = lit.map(own).chain(silhouette);
+        Prisms {
+            light,
+            shadow: Prism(shadow.flatten().collect()),
+        }
+    }
+}
+
+/// An intersection of half-spaces.
+struct Prism(Vec<PrismPlane>);
+
+impl Prism {
+    /// Whether all of the balls certainly lie outside, beyond one of its planes.
+    fn misses(&self, balls: Balls<'_>) -> bool {
+        self.0.iter().any(|plane| plane.is_below(balls))
+    }
 }
 
 /// A plane of a prism.
@@ -149,32 +242,12 @@ impl PrismPlane {
         (self.error + 8.0 * f64::EPSILON * self.length) * magnitudes * 2.0
     }
 
-    /// Whether a ball certainly lies above the plane.
-    fn is_outside(&self, ball: &BoundingBall) -> bool {
-        let height = self.normal.dot(ball.center - self.at);
-        height > ball.radius * MARGIN * (self.length + self.error) + self.slack(ball.center)
-    }
-}
-
-impl LitFace {
-    /// Face `k`, with `l` of length 1.
-    fn new(tetrahedron: &Tetrahedron, k: usize, l: DVec3) -> Self {
-        let v = tetrahedron.vertices;
-        let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| v[i]);
-        let magnitude = v.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
-        let edge = |from: DVec3, to: DVec3, third: DVec3| {
-            PrismPlane::new(from, [to - from, l], third, magnitude.max(1.0))
-        };
-        // The prism lies on the other side of the face than the solid.
-        let own = PrismPlane::new(a, [b - a, c - a], v[k], magnitude).map(PrismPlane::flipped);
-        LitFace {
-            planes: [own, edge(a, b, c), edge(b, c, a), edge(c, a, b)],
-        }
-    }
-
-    fn may_be_shadowed_by(&self, caster: &BoundingBall) -> bool {
-        let mut planes = self.planes.iter().flatten();
-        !planes.any(|plane| plane.is_outside(caster))
+    /// Whether the plane certainly lies below all of the balls.
+    fn is_below(&self, balls: Balls<'_>) -> bool {
+        let radius = balls.radius * MARGIN * (self.length + self.error);
+        let is_above =
+            |center: &DVec3| self.normal.dot(center - self.at) > radius + self.slack(*center);
+        balls.centers.iter().all(is_above)
     }
 }
 
@@ -234,10 +307,10 @@ impl SurfaceCasters {
             };
             Some((ends(middle.x), ends(middle.z)))
         };
-        let balls = bounding_balls(spheres, tetrahedra);
+        let bounds = bounding_balls(spheres, tetrahedra);
         let mut of_cells = vec![Vec::new(); CELLS * CELLS];
         let mut all = Vec::new();
-        for (solid, ball) in balls
+        for (solid, ball) in bounds
             .iter()
             .enumerate()
             .filter(|(solid, _)| !hidden[*solid])
@@ -287,5 +360,118 @@ impl SurfaceCasters {
             }
             _ => &self.all,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Whether the ray from a point along `l` certainly meets a ball.
+    fn meets_ball(point: DVec3, l: DVec3, center: DVec3, radius: f64) -> bool {
+        let between = center - point;
+        between.dot(l) > 0.0 && between.cross(l).length() < radius * 0.999
+    }
+
+    /// Whether the ray from a point along `l` certainly meets a tetrahedron: its line enters all
+    /// faces before it leaves any.
+    fn meets_tetrahedron(point: DVec3, l: DVec3, tetrahedron: &Tetrahedron) -> bool {
+        let (mut enter, mut leave) = (1e-6, f64::INFINITY);
+        for k in 0..4 {
+            let [a, b, c] = face(tetrahedron, k);
+            let normal = (b - a).cross(c - a);
+            let outward = -normal * normal.dot(tetrahedron.vertices[k] - a).signum();
+            let (height, climb) = (outward.dot(point - a), outward.dot(l));
+            let at = -height / climb;
+            if climb < 0.0 {
+                enter = at.max(enter);
+            } else {
+                leave = at.min(leave);
+            }
+        }
+        enter + 1e-6 < leave
+    }
+
+    #[test]
+    fn every_solid_that_a_ray_to_the_light_meets_is_a_caster() {
+        let mut random = Random::new();
+        let mut number = |max: f64| max * (2.0 * random.fraction() - 1.0);
+        let (mut met, mut listed, mut pairs) = (0, 0, 0);
+        for _ in 0..60 {
+            let mut vector = |max: f64| DVec3::new(number(max), number(max), number(max));
+            let l = vector(1.0).normalize();
+            let tetrahedra: Vec<Tetrahedron> = (0..12)
+                .map(|_| {
+                    let middle = vector(1.0);
+                    Tetrahedron {
+                        vertices: [(); 4].map(|()| middle + vector(0.4)),
+                        color: DVec3::ONE,
+                    }
+                })
+                .collect();
+            let spheres: Vec<Sphere> = (0..4)
+                .map(|_| Sphere {
+                    center: vector(1.0),
+                    radius: 0.2,
+                    color: DVec3::ONE,
+                })
+                .collect();
+            let facing: Vec<[Ordering; 4]> = tetrahedra
+                .iter()
+                .map(|tetrahedron| {
+                    [0, 1, 2, 3].map(|k| {
+                        let [a, b, c] = face(tetrahedron, k);
+                        let normal = (b - a).cross(c - a);
+                        let inward = normal.dot(tetrahedron.vertices[k] - a).signum();
+                        (-inward * normal.dot(l)).total_cmp(&0.0)
+                    })
+                })
+                .collect();
+            let solids = spheres.len() + tetrahedra.len();
+            let casters = Casters::new(&spheres, &tetrahedra, l, &vec![false; solids], &facing);
+            let mut check = |receiver: usize, face: Option<usize>, point: DVec3| {
+                for caster in (0..solids).filter(|caster| *caster != receiver) {
+                    let is_met = match spheres.get(caster) {
+                        Some(sphere) => meets_ball(point, l, sphere.center, sphere.radius),
+                        None => meets_tetrahedron(point, l, &tetrahedra[caster - spheres.len()]),
+                    };
+                    let is_listed = casters.on(receiver, face).contains(&(caster as u16));
+                    assert!(
+                        is_listed || !is_met,
+                        "{caster} shadows {receiver}, {face:?}"
+                    );
+                    met += usize::from(is_met);
+                    listed += usize::from(is_listed);
+                    pairs += 1;
+                }
+            };
+            for (receiver, sphere) in spheres.iter().enumerate() {
+                for _ in 0..20 {
+                    let point = sphere.center + vector(1.0).normalize() * sphere.radius;
+                    check(receiver, None, point);
+                }
+            }
+            for (index, tetrahedron) in tetrahedra.iter().enumerate() {
+                for k in (0..4).filter(|k| facing[index][*k].is_gt()) {
+                    let [a, b, c] = face(tetrahedron, k);
+                    for _ in 0..20 {
+                        let [i, j] = [a, b].map(|_| vector(1.0).x.abs());
+                        let (i, j) = if i + j > 1.0 {
+                            (1.0 - i, 1.0 - j)
+                        } else {
+                            (i, j)
+                        };
+                        let point = a + (b - a) * i + (c - a) * j;
+                        check(spheres.len() + index, Some(k), point);
+                    }
+                }
+            }
+        }
+        // Most solids shadow nothing, and are not listed.
+        assert!(
+            met > 1000 && listed < 6 * met,
+            "{met} of {listed}, {pairs} in all"
+        );
     }
 }
