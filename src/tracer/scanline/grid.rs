@@ -60,6 +60,13 @@ impl Grid {
         }
     }
 
+    /// The columns or rows whose X or Y may lie between two bounds.
+    pub(crate) fn between(&self, low: f64, high: f64) -> Columns {
+        // One more on either side is far more than rounding takes.
+        let number = |coordinate: f64| self.half + coordinate / 3.0;
+        (self.ceil(number(low) - 1.0), self.count(number(high) + 1.0))
+    }
+
     /// The number of columns at or before a position given in columns.
     pub(crate) fn count(&self, position: f64) -> u32 {
         if position < 0.0 {

@@ -66,6 +66,9 @@ pub(crate) struct ParallelLines<'s> {
     middle_per_row: Bounded,
     /// The change of m from one row to the next.
     m_per_row: Bounded,
+    /// The product of this vector with a point, seen from the plane's origin, is Y of the pixel
+    /// whose line passes through the point.
+    row_axis: Vector<Bounded>,
 }
 
 impl<'s> ParallelLines<'s> {
@@ -86,7 +89,19 @@ impl<'s> ParallelLines<'s> {
             shortest,
             middle_per_row: -(per_row.dot(per_column) / squared_per_column),
             m_per_row: per_row.dot(shortest),
+            row_axis: per_column.divided_by(plane.per_row.dot(per_column)),
         }
+    }
+
+    /// The rows of the pixels whose lines may meet the convex hull of some points.
+    pub(crate) fn rows_through(&self, points: [Vector<Bounded>; 4], grid: Grid) -> (u32, u32) {
+        let y = points.map(|point| (point - self.plane.origin).dot(self.row_axis));
+        let low = y.map(Bounded::at_least).into_iter();
+        let high = y.map(Bounded::at_most).into_iter();
+        grid.between(
+            low.fold(f64::INFINITY, f64::min),
+            high.fold(f64::NEG_INFINITY, f64::max),
+        )
     }
 
     /// The pixels whose lines meet a sphere: |(p − c) × l|² ≤ |l|² R².
@@ -241,13 +256,49 @@ impl Ellipse {
     pub(crate) fn rows(&self, grid: Grid) -> (u32, u32) {
         let ends = [-self.limit, self.limit].map(|m| self.m.zero + m / self.m.slope);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        // A row more on either side is far more than rounding takes.
-        let row_of = |y: f64| grid.half + y / 3.0;
-        let rows = (grid.ceil(row_of(low) - 1.0), grid.count(row_of(high) + 1.0));
         if low.is_finite() && high.is_finite() {
-            rows
+            grid.between(low, high)
         } else {
             (0, grid.size)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn lines_through_a_point_are_in_the_rows_through_it() {
+        let mut random = Random::new();
+        let grid = Grid::new(500);
+        let mut narrow = 0;
+        for _ in 0..1000 {
+            let [column, row] = [(); 2].map(|()| random.below(500) as u32);
+            let mut number = |max: f64| Bounded::exact(max * (2.0 * random.fraction() - 1.0));
+            let mut vector = |max: f64| Vector::new(number(max), number(max), number(max));
+            let plane = PixelPlane {
+                origin: vector(750.0),
+                per_column: vector(1.0),
+                per_row: vector(1.0),
+                plane: None,
+            };
+            let direction = vector(1.0);
+            let lines = ParallelLines::new(
+                &plane,
+                Direction {
+                    vector: direction,
+                    squared_length: direction.squared_length(),
+                },
+            );
+            let [x, y] = [column, row].map(|number| Bounded::exact(grid.coordinate(number)));
+            let on_plane = plane.origin + plane.per_column * x + plane.per_row * y;
+            let point = on_plane + direction * number(500.0);
+            let (from, to) = lines.rows_through([point; 4], grid);
+            assert!(from <= row && row < to, "{row}: {from} to {to}");
+            narrow += u32::from(to - from <= 4);
+        }
+        assert!(narrow > 950, "{narrow} of 1000");
     }
 }

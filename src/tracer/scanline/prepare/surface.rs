@@ -1,11 +1,14 @@
 //! The surface, prepared for a frame's rows.
 
+use std::cell::LazyCell;
+
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, SurfaceCasters};
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::{Picture, SeenSurface};
+use crate::tracer::scanline::edges::ellipse::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
@@ -85,9 +88,18 @@ impl<'f> PreparedSurface<'f> {
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();
         let casters = casters.into_iter().flat_map(SurfaceCasters::all).copied();
-        let cast = shadows_on(&plane, view, casters, is_ahead, grid, parts.arena);
+        let cast = shadows_on(&plane, view, casters.clone(), is_ahead, grid, parts.arena);
+        // The half-planes of a tetrahedron's shadow do not tell in which rows it lies.
+        let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light));
+        let rows_of = |caster: u16| match usize::from(caster).checked_sub(view.spheres.len()) {
+            Some(caster) => lines.rows_through(view.tetrahedra[caster].solid.vertices(), grid),
+            None => rows,
+        };
+        let cast = casters
+            .zip(cast)
+            .map(|(caster, shadow)| shadow.within(rows_of(caster)).within(rows));
         let mut shadows = Growing::new_in(parts.arena);
-        shadows.extend(cast.map(|shadow| shadow.within(rows)));
+        shadows.extend(cast);
         let mirror = surface.mirror.as_ref();
         let mut mirrored = mirror.map(|mirror| {
             let within = Some(&surface.extent);
