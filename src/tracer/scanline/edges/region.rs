@@ -11,11 +11,9 @@
 //! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
 //! the bound are decided; the columns within it, rarely one, are decided one by one.
 
-use bumpalo::Bump;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::arena::collect;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
@@ -25,6 +23,8 @@ use crate::tracer::scanline::grid::{Grid, ROWS, offsets};
 /// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
     half_planes: &'f [HalfPlane],
+    /// More half-planes: those of the region that this one is clipped to.
+    clip: &'f [HalfPlane],
     ellipse: Option<Ellipse>,
     /// The half-open range of rows outside of which the region has no pixels that matter.
     rows: (u32, u32),
@@ -37,6 +37,7 @@ impl<'f> Region<'f> {
             .map_or((0, grid.size), |ellipse| ellipse.rows(grid));
         Region {
             half_planes,
+            clip: &[],
             ellipse,
             rows,
         }
@@ -47,11 +48,9 @@ impl<'f> Region<'f> {
         self.half_planes
     }
 
-    /// The intersection with these half-planes.
-    pub(crate) fn clipped(mut self, half_planes: &[HalfPlane], arena: &'f Bump) -> Self {
-        let both = self.half_planes.iter().chain(half_planes);
-        self.half_planes = collect(arena, both.copied());
-        self
+    /// The intersection with these half-planes, for a region that is not clipped yet.
+    pub(crate) fn clipped(self, clip: &'f [HalfPlane]) -> Self {
+        Region { clip, ..self }
     }
 
     /// The same region, of which only these rows matter.
@@ -96,8 +95,10 @@ impl<'f> Region<'f> {
                     }
                 }
             };
-            for half_plane in self.half_planes {
-                half_plane.cut(simd, y, &mut enclosure);
+            for half_planes in [self.half_planes, self.clip] {
+                for half_plane in half_planes {
+                    half_plane.cut(simd, y, &mut enclosure);
+                }
             }
             let is_crossed =
                 y.simd_ge(grid.coordinate(self.rows.0)) & y.simd_lt(grid.coordinate(self.rows.1));
@@ -175,7 +176,7 @@ impl<'f> Region<'f> {
             Some(ellipse) => ellipse.decide(x, y, grid),
             None => Some(true),
         };
-        for half_plane in self.half_planes {
+        for half_plane in self.half_planes.iter().chain(self.clip) {
             match half_plane.decide_near(x, y, grid) {
                 Some(false) => return Some(false),
                 Some(true) => {}

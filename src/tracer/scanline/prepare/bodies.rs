@@ -174,10 +174,14 @@ impl<'p, 's> Bodies<'p, 's> {
                 .position(|(other, _)| *other == face)
         };
         let screen = screen_plane(grid);
+        // A crease matters within the solid only: elsewhere a level one would cross many edges.
+        let outline = solid.outline.half_planes();
         let pairs = t.solid.entered_pairs(&t.from_eye);
         let pairs = pairs.filter_map(|(i, j, first)| {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
-            let crease = Region::new(crease, None, grid).within(rows);
+            let crease = Region::new(crease, None, grid)
+                .within(rows)
+                .clipped(outline);
             Some(Pair {
                 front_faces: (index(i)?, index(j)?),
                 first: parts.edge_table.add(crease, RegionKind::Crease),
@@ -201,7 +205,7 @@ impl<'p, 's> Bodies<'p, 's> {
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let outline = solid.outline.half_planes();
-        let clipped = |shadow: Region<'f>| shadow.clipped(outline, arena);
+        let clipped = |shadow: Region<'f>| shadow.clipped(outline);
         let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(clipped));
         shadows
