@@ -10,6 +10,8 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
 use super::line::{Direction, Hit, Line, Normal};
 use super::vector::Vector;
 use crate::number::{Real, all};
@@ -32,9 +34,8 @@ const EDGES: [(usize, usize, [usize; 2]); 6] = [
 /// A tetrahedron in view space.
 pub(super) struct Tetrahedron<R> {
     vertices: [Vector<R>; 4],
-    /// Outward, of length `normal_lengths`.
+    /// Outward, of any length.
     normals: [Vector<R>; 4],
-    normal_lengths: [R; 4],
     /// Whether the edges 0→1, 0→2, 0→3 are right-handed.
     right_handed: bool,
     /// The plane of each face.
@@ -72,9 +73,8 @@ pub(super) struct EdgeFunctions<R> {
     /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
     /// where it runs along.
     face_signs: [Ordering; 4],
-    /// g of each face.
-    n_dot_d: [R; 4],
-    /// The moment of each of [`EDGES`]: (n_i × n_j) × d without its positive factor.
+    /// The moment of each of [`EDGES`]: (n_i × n_j) × d without its positive factor. Edges between
+    /// two faces that lines leave or run along are never asked for.
     moments: [Vector<R>; 6],
 }
 
@@ -98,11 +98,9 @@ impl<R: Real> Tetrahedron<R> {
             let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
             if right_handed { normal } else { -normal }
         });
-        let normal_lengths = normals.map(Vector::length);
         Tetrahedron {
             vertices,
             normals,
-            normal_lengths,
             right_handed,
             supports,
             facing_light,
@@ -124,14 +122,15 @@ impl<R: Real> Tetrahedron<R> {
         direction: &Direction<R>,
         face_signs: [Ordering; 4],
     ) -> EdgeFunctions<R> {
-        let n_dot_d = self.normals.map(|normal| normal.dot(direction.vector));
-        let moments = EDGES.map(|(_, _, [from, to])| {
+        let moments = EDGES.map(|(i, j, [from, to])| {
+            if face_signs[i].is_ge() && face_signs[j].is_ge() {
+                return Vector::exact(DVec3::ZERO);
+            }
             let moment = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
             if self.right_handed { moment } else { -moment }
         });
         EdgeFunctions {
             face_signs,
-            n_dot_d,
             moments,
         }
     }
@@ -145,7 +144,7 @@ impl<R: Real> Tetrahedron<R> {
     pub(super) fn normal(&self, face: usize) -> Normal<R> {
         Normal {
             vector: self.normals[face],
-            length: self.normal_lengths[face],
+            length: self.normals[face].length(),
             facing_light: Some(self.facing_light[face]),
         }
     }
@@ -265,7 +264,8 @@ impl<R: Real> Tetrahedron<R> {
             return Ok(None);
         }
         let face = self.entered_face(functions, line)?;
-        let depth = -self.outside(face, line.origin) / functions.n_dot_d[face];
+        let n_dot_d = self.normals[face].dot(line.direction.vector);
+        let depth = -self.outside(face, line.origin) / n_dot_d;
         Ok(Some(Hit {
             depth,
             point: line.at(depth),

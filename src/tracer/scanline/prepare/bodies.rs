@@ -160,9 +160,10 @@ impl<'p, 's> Bodies<'p, 's> {
                 let decision = self.decision(solid.number, Some(*face), in_shadow);
                 parts.paints.of(decision)
             };
+            let in_shadow = paint(self.shadows);
             front_faces.push(FrontFace {
-                lit: paint(false),
-                in_shadow: paint(self.shadows),
+                lit: if turned_away { in_shadow } else { paint(false) },
+                in_shadow,
                 turned_away,
                 shadows: parts.edge_table.add_receiver(shadows, rows),
             });
