@@ -116,6 +116,14 @@ impl<R: Real> Frame<R> {
     }
 }
 
+impl Frame<f64> {
+    /// The direction of eye rays in the scene's own axes; of mirrored rays, reflected back.
+    pub(super) fn looking_in_scene(&self, mirrored: bool) -> DVec3 {
+        let down = if mirrored { 3.0 } else { -3.0 };
+        DVec3::new(-10.0 * self.sin, down, -10.0 * self.cos)
+    }
+}
+
 /// The reflection in the horizontal plane of height `mirror`, if there is one.
 pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
     match mirror {

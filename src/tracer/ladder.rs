@@ -60,14 +60,15 @@ struct FrameSetup<'f> {
 impl<'f> FrameSetup<'f> {
     fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
         let bounded = frame::<Bounded>(alpha, size);
+        let plain = frame::<f64>(alpha, size);
         let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
         let signs = |mirrored| {
             bounded
-                .signs(scene, mirrored, arena)
-                .or_else(|Doubt| double_double.signs(scene, mirrored, arena))
+                .signs(scene, &plain, mirrored, arena)
+                .or_else(|Doubt| double_double.signs(scene, &plain, mirrored, arena))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        frame::<Expression>(alpha, size).signs(scene, mirrored, arena)
+                        frame::<Expression>(alpha, size).signs(scene, &plain, mirrored, arena)
                     })
                 })
                 .map(|signs| {

@@ -16,23 +16,30 @@ use super::frame::{Frame, looking, reflect};
 use super::line::{Hit, Line, Normal};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
-use super::tetrahedron::{EdgeFunctions, Tetrahedron};
+use super::tetrahedron::{EdgeFunctions, Tetrahedron, certain_face_signs};
 use super::vector::Vector;
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Support};
 
 impl<R: Real> Frame<R> {
-    /// The signs that a view of this frame needs.
+    /// The signs that a view of this frame needs. `plain` is the same frame in f64.
     pub(super) fn signs<'f>(
         &self,
         scene: &Scene,
+        plain: &Frame<f64>,
         mirrored: bool,
         arena: &'f Bump,
     ) -> Result<ViewSigns<'f>, R::Doubt> {
         let mirror = self.mirror(scene).filter(|_| mirrored);
-        let face_signs = (0..scene.tetrahedra().len()).map(|index| {
-            self.tetrahedron(scene, index, mirror)
-                .face_signs(&looking())
+        let looking_in_scene = plain.looking_in_scene(mirrored);
+        let solids = scene.tetrahedra().iter().zip(&scene.facts().right_handed);
+        let face_signs = solids.enumerate().map(|(index, (solid, &right_handed))| {
+            match certain_face_signs(&solid.vertices, right_handed, looking_in_scene) {
+                Some(signs) => Ok(signs),
+                None => self
+                    .tetrahedron(scene, index, mirror)
+                    .face_signs(&looking()),
+            }
         });
         let eye = looking::<R>().vector;
         let to_light = self.direction_to_light(scene, mirrored).vector;
