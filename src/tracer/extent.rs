@@ -8,7 +8,7 @@ use super::arena::collect;
 use super::frame::{Frame, reflect};
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
-use crate::number::{Bounded, Real};
+use crate::number::Bounded;
 use crate::scene::Scene;
 
 /// The pixels whose eye ray can meet a solid; all others certainly miss it.
@@ -31,10 +31,7 @@ pub(super) struct Extents<'f> {
 /// The extents of all solids, and which of them reach each tile of the screen, the nearest first.
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
-    all: &'f [Extent],
-    /// For each solid, a lower bound on 109 t − 3 Y where an eye ray meets it: t is the ray's
-    /// parameter, Y the coordinate of the pixel's row.
-    nearest: &'f [f64],
+    all: &'f [SolidExtent],
     /// N/2.
     half: f64,
     /// Pixels along a side of a tile.
@@ -47,6 +44,14 @@ pub(super) struct ExtentsOfSolids<'f> {
     solids: &'f [u16],
 }
 
+/// The extent of a solid, and how near it is.
+struct SolidExtent {
+    extent: Extent,
+    /// A lower bound on 109 t − 3 Y where an eye ray meets the solid: t is the ray's parameter, Y
+    /// the coordinate of the pixel's row.
+    nearest: f64,
+}
+
 /// Tiles in a row, if there are more than [`FEW`] solids.
 const TILES: u32 = 32;
 /// So many solids share one tile.
@@ -55,7 +60,6 @@ const FEW: usize = 16;
 impl<'f> ExtentsOfSolids<'f> {
     const NONE: ExtentsOfSolids<'static> = ExtentsOfSolids {
         all: &[],
-        nearest: &[],
         half: 0.0,
         side: 1,
         tiles_per_row: 1,
@@ -63,11 +67,11 @@ impl<'f> ExtentsOfSolids<'f> {
         solids: &[],
     };
 
-    fn new(all: &'f [Extent], nearest: &'f [f64], size: u32, arena: &'f Bump) -> Self {
+    fn new(all: &'f [SolidExtent], size: u32, arena: &'f Bump) -> Self {
         let tiles = if all.len() > FEW { TILES } else { 1 };
         let side = size.div_ceil(tiles);
         let tiles_per_row = size.div_ceil(side);
-        let reached = |extent: &Extent| {
+        let reached = |SolidExtent { extent, .. }: &SolidExtent| {
             let tiles = |(from, to): (u32, u32)| {
                 if from < to {
                     from / side..to.div_ceil(side)
@@ -94,7 +98,8 @@ impl<'f> ExtentsOfSolids<'f> {
         let solids = arena.alloc_slice_fill_copy(end as usize, 0);
         // Each tile is filled from its end: the farthest first.
         let order = arena.alloc_slice_fill_iter((0..all.len()).map(|solid| solid as u16));
-        order.sort_by(|a, b| nearest[usize::from(*b)].total_cmp(&nearest[usize::from(*a)]));
+        let nearest = |solid: u16| all[usize::from(solid)].nearest;
+        order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)));
         for &mut solid in order {
             for tile in reached(&all[usize::from(solid)]) {
                 starts[tile] -= 1;
@@ -103,7 +108,6 @@ impl<'f> ExtentsOfSolids<'f> {
         }
         ExtentsOfSolids {
             all,
-            nearest,
             half: f64::from(size) / 2.0,
             side,
             tiles_per_row,
@@ -119,13 +123,13 @@ impl<'f> ExtentsOfSolids<'f> {
 
     /// The extent of a solid.
     pub(super) fn of(&self, solid: usize) -> &'f Extent {
-        &self.all[solid]
+        &self.all[solid].extent
     }
 
     /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of
     /// the solids of [`ExtentsOfSolids::at`] are in increasing order.
     pub(super) fn min_depth(&self, solid: usize, y: f64) -> f64 {
-        let depth = (self.nearest[solid] + 3.0 * y) / 109.0;
+        let depth = (self.all[solid].nearest + 3.0 * y) / 109.0;
         // 3 Y is a whole number of halves; the sum and the quotient round by u each.
         depth - 2.0 * f64::EPSILON * depth.abs()
     }
@@ -136,7 +140,7 @@ impl<'f> ExtentsOfSolids<'f> {
         let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
         let (all, solids) = (self.all, &self.solids[range]);
         let solids = solids.iter().map(|solid| usize::from(*solid));
-        solids.filter(move |solid| all[*solid].holds(column, row))
+        solids.filter(move |solid| all[*solid].extent.holds(column, row))
     }
 }
 
@@ -172,40 +176,32 @@ impl Extent {
 
     /// The smallest extent that holds the projections of all `points` onto the screen, each
     /// enlarged by `half_width` to the left and right and by `half_height` up and down, in view
-    /// space.
+    /// space, and by `rounding` to all sides.
     fn of(
-        points: &[Vector<Bounded>],
-        half_width: Bounded,
-        half_height: Bounded,
+        points: &[Vector<f64>],
+        (half_width, half_height): (f64, f64),
+        rounding: f64,
         size: u32,
     ) -> Extent {
         let half = f64::from(size) / 2.0;
-        let third = Bounded::exact(1.0) / Bounded::exact(3.0);
         // The ray through a point p meets the screen, z = 3N/2, at y = p.y + (3N/2 − p.z) · 3/10.
-        let screen = Bounded::exact(3.0 * half);
-        let slope = Bounded::exact(3.0) / Bounded::exact(10.0);
-        let columns = points.iter().map(|p| (p.x, half_width));
-        let rows = points
-            .iter()
-            .map(|p| (p.y + (screen - p.z) * slope, half_height));
-        let range = |intervals: &mut dyn Iterator<Item = (Bounded, Bounded)>| {
-            let ends = intervals.map(|(middle, half_length)| {
-                let pixels = |x: Bounded| x * third + Bounded::exact(half);
-                (
-                    pixels(middle - half_length).at_least(),
-                    pixels(middle + half_length).at_most(),
-                )
+        let columns = points.iter().map(|p| p.x);
+        let rows = points.iter().map(|p| p.y + (3.0 * half - p.z) * 0.3);
+        let range = |coordinates: &mut dyn Iterator<Item = f64>, half_length: f64| {
+            let ends = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (x.min(low), x.max(high))
             });
-            let (low, high) = ends
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (l, h)| {
-                    (low.min(l), high.max(h))
-                });
+            let number = |x: f64| x / 3.0 + half;
+            let (low, high) = (
+                number(ends.0 - half_length - rounding),
+                number(ends.1 + half_length + rounding),
+            );
             // A float beyond an i64 becomes the nearest one, which is far outside of any picture.
             low.floor() as i64..=high.ceil() as i64
         };
         Extent {
-            columns: range(&mut columns.into_iter()),
-            rows: range(&mut rows.into_iter()),
+            columns: range(&mut columns.into_iter(), half_width),
+            rows: range(&mut rows.into_iter(), half_height),
         }
     }
 }
@@ -219,42 +215,50 @@ fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
 impl<'f> Extents<'f> {
     pub(super) fn new(
         scene: &'f Scene,
-        frame: &Frame<Bounded>,
+        frame: &Frame<f64>,
+        bounded: &Frame<Bounded>,
         size: u32,
         arena: &'f Bump,
     ) -> Self {
-        let solids = |mirror: Option<Bounded>| {
+        // To turn, scale, reflect and project a point takes fewer than 32 roundings, each by at
+        // most u = 2⁻⁵³ of these magnitudes: 2⁻⁴⁰ of them is more than all roundings, and far less
+        // than a pixel.
+        let least = 3.0 * f64::from(size) + 2.0 * frame.mirror(scene).unwrap_or(0.0).abs();
+        let rounding = |points: &[Vector<f64>], radius: f64| {
+            let magnitudes = points.iter().map(|p| p.x.abs() + p.y.abs() + p.z.abs());
+            let largest = magnitudes.fold(0.0, f64::max);
+            (largest + 2.0 * radius + least) / (1_u64 << 40) as f64
+        };
+        let solids = |mirror: Option<f64>| {
             let point = |p| reflect(frame.point(p), mirror);
-            // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
-            let stretch = Bounded::exact(109.0).sqrt() / Bounded::exact(10.0);
-            let spheres = scene.spheres().iter().map(|sphere| {
-                let radius = Bounded::exact(sphere.radius) * frame.scale;
-                Extent::of(&[point(sphere.center)], radius, radius * stretch, size)
-            });
-            let none = Bounded::exact(0.0);
-            let tetrahedra = scene
-                .tetrahedra()
-                .iter()
-                .map(|t| Extent::of(&t.vertices.map(point), none, none, size));
-            let all = collect(arena, spheres.chain(tetrahedra));
+            let root = 109_f64.sqrt();
             // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
-            let [three, ten] = [3.0, 10.0].map(Bounded::exact);
-            let toward = |p: Vector<Bounded>| three * p.y + ten * p.z;
-            let screen = Bounded::exact(15.0 * f64::from(size));
-            let root = Bounded::exact(109.0).sqrt();
+            let toward = |p: Vector<f64>| 15.0 * f64::from(size) - (3.0 * p.y + 10.0 * p.z);
             let spheres = scene.spheres().iter().map(|sphere| {
-                let radius = Bounded::exact(sphere.radius) * frame.scale * root;
-                (screen - toward(point(sphere.center)) - radius).at_least()
+                let center = point(sphere.center);
+                let radius = sphere.radius * frame.scale;
+                let rounding = rounding(&[center], radius);
+                // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
+                let half = (radius, radius * root / 10.0);
+                SolidExtent {
+                    extent: Extent::of(&[center], half, rounding, size),
+                    nearest: toward(center) - radius * root - 16.0 * rounding,
+                }
             });
             let tetrahedra = scene.tetrahedra().iter().map(|t| {
-                let vertices = t.vertices.map(|vertex| screen - toward(point(vertex)));
-                vertices
-                    .map(Bounded::at_least)
+                let vertices = t.vertices.map(point);
+                let rounding = rounding(&vertices, 0.0);
+                let nearest = vertices
+                    .map(toward)
                     .into_iter()
-                    .fold(f64::INFINITY, f64::min)
+                    .fold(f64::INFINITY, f64::min);
+                SolidExtent {
+                    extent: Extent::of(&vertices, (0.0, 0.0), rounding, size),
+                    nearest: nearest - 16.0 * rounding,
+                }
             });
-            let nearest = collect(arena, spheres.chain(tetrahedra));
-            ExtentsOfSolids::new(all, nearest, size, arena)
+            let all = collect(arena, spheres.chain(tetrahedra));
+            ExtentsOfSolids::new(all, size, arena)
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
@@ -264,7 +268,7 @@ impl<'f> Extents<'f> {
                     z * surface.half_width,
                 ))
             });
-            Extent::of(&corners, Bounded::exact(0.0), Bounded::exact(0.0), size)
+            Extent::of(&corners, (0.0, 0.0), rounding(&corners, 0.0), size)
         });
         let mirror = frame.mirror(scene);
         let mirrored = if mirror.is_some() {
@@ -276,7 +280,7 @@ impl<'f> Extents<'f> {
             direct: solids(None),
             mirrored,
             surface,
-            casters_on_surface: CastersOnSurface::new(scene, frame, size),
+            casters_on_surface: CastersOnSurface::new(scene, bounded, size),
         }
     }
 }

@@ -88,7 +88,7 @@ impl<'f> FrameSetup<'f> {
         FrameSetup {
             frame: bounded,
             signs,
-            extents: Extents::new(scene, &bounded, size, arena),
+            extents: Extents::new(scene, &plain, &bounded, size, arena),
         }
     }
 
