@@ -276,11 +276,12 @@ impl ActiveEdges {
         for gap in 0..self.gaps.len() {
             let to = self.sorted_columns[gap][row];
             if self.gaps[gap] == Packed::UNRESOLVED && from < to {
+                self.coverage.look(table);
                 self.gaps[gap] = Packed::new(resolve(&self.coverage));
             }
             from = to;
             if let Some(edge) = self.edges.get(gap) {
-                self.coverage.cross(table, edge.region(), edge.cover());
+                self.coverage.cross(edge.region(), edge.cover());
             }
         }
     }

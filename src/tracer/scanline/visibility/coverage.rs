@@ -1,7 +1,8 @@
 //! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! Coverage follows the edges of a row from the left to the right: each edge changes one entry, and
-//! nothing is computed anew for a column.
+//! Coverage follows the edges of a row from the left to the right, and keeps the regions that cover
+//! the present column. Few columns are looked at: only there their solids and shadows are told
+//! apart.
 
 use crate::tracer::scanline::edges::table::{EdgeTable, Receiver, RegionKind, SolidIndex};
 
@@ -23,20 +24,11 @@ struct Tally {
 }
 
 impl Tally {
-    fn count(&mut self, cover: Cover) -> Option<&mut u32> {
+    fn add(&mut self, cover: Cover) {
         match cover {
-            Cover::Not => None,
-            Cover::Certainly => Some(&mut self.certain),
-            Cover::Unknown => Some(&mut self.unknown),
-        }
-    }
-
-    fn change(&mut self, from: Cover, to: Cover) {
-        if let Some(count) = self.count(from) {
-            *count -= 1;
-        }
-        if let Some(count) = self.count(to) {
-            *count += 1;
+            Cover::Not => {}
+            Cover::Certainly => self.certain += 1,
+            Cover::Unknown => self.unknown += 1,
         }
     }
 
@@ -64,14 +56,10 @@ impl CoveringSolids {
         self.tally = Tally::default();
     }
 
-    fn change(&mut self, solid: SolidIndex, from: Cover, to: Cover) {
-        self.tally.change(from, to);
-        match (self.solids.binary_search(&solid), to) {
-            (Err(index), Cover::Certainly) => self.solids.insert(index, solid),
-            (Ok(index), Cover::Not | Cover::Unknown) => {
-                self.solids.remove(index);
-            }
-            _ => {}
+    fn add(&mut self, solid: SolidIndex, cover: Cover) {
+        self.tally.add(cover);
+        if cover == Cover::Certainly {
+            self.solids.push(solid);
         }
     }
 }
@@ -81,6 +69,8 @@ impl CoveringSolids {
 pub(crate) struct Coverage {
     /// By the number of the region.
     covers: Vec<Cover>,
+    /// The regions that cover the column certainly or possibly.
+    covering: Vec<usize>,
     /// Solids seen directly.
     pub(crate) direct: CoveringSolids,
     /// Solids seen in the mirror.
@@ -88,6 +78,8 @@ pub(crate) struct Coverage {
     surface: Tally,
     /// The shadows on each receiver.
     shadows: Vec<Tally>,
+    /// The receivers whose entries in `shadows` are in use.
+    receivers: Vec<Receiver>,
 }
 
 impl Coverage {
@@ -95,23 +87,47 @@ impl Coverage {
     pub(crate) fn clear(&mut self, table: &EdgeTable<'_>) {
         self.covers.clear();
         self.covers.resize(table.kinds.len(), Cover::Not);
-        self.direct.clear();
-        self.mirrored.clear();
-        self.surface = Tally::default();
+        self.covering.clear();
         self.shadows.clear();
         self.shadows.resize(table.receivers, Tally::default());
+        self.receivers.clear();
     }
 
     /// Goes across an edge of a region, to columns that the region covers as `to` tells.
-    pub(crate) fn cross(&mut self, table: &EdgeTable<'_>, region: usize, to: Cover) {
+    pub(crate) fn cross(&mut self, region: usize, to: Cover) {
         let from = std::mem::replace(&mut self.covers[region], to);
-        match table.kinds[region] {
-            RegionKind::Surface => self.surface.change(from, to),
-            RegionKind::Shadow(Receiver(number)) => self.shadows[number as usize].change(from, to),
-            RegionKind::Direct(solid) => self.direct.change(solid, from, to),
-            RegionKind::Mirrored(solid) => self.mirrored.change(solid, from, to),
-            RegionKind::Crease => {}
+        if from == Cover::Not {
+            self.covering.push(region);
+        } else if to == Cover::Not
+            && let Some(index) = self.covering.iter().rposition(|other| *other == region)
+        {
+            self.covering.swap_remove(index);
         }
+    }
+
+    /// Tells solids and shadows of the present column apart.
+    pub(crate) fn look(&mut self, table: &EdgeTable<'_>) {
+        self.direct.clear();
+        self.mirrored.clear();
+        self.surface = Tally::default();
+        for Receiver(number) in self.receivers.drain(..) {
+            self.shadows[number as usize] = Tally::default();
+        }
+        for &region in &self.covering {
+            let cover = self.covers[region];
+            match table.kinds[region] {
+                RegionKind::Surface => self.surface.add(cover),
+                RegionKind::Shadow(receiver) => {
+                    self.shadows[receiver.0 as usize].add(cover);
+                    self.receivers.push(receiver);
+                }
+                RegionKind::Direct(solid) => self.direct.add(solid, cover),
+                RegionKind::Mirrored(solid) => self.mirrored.add(solid, cover),
+                RegionKind::Crease => {}
+            }
+        }
+        self.direct.solids.sort_unstable();
+        self.mirrored.solids.sort_unstable();
     }
 
     /// Whether the column meets the surface.
