@@ -47,9 +47,15 @@ pub(super) struct ExtentsOfSolids<'f> {
 /// The extent of a solid, and how near it is.
 struct SolidExtent {
     extent: Extent,
-    /// A lower bound on 109 t − 3 Y where an eye ray meets the solid: t is the ray's parameter, Y
-    /// the coordinate of the pixel's row.
-    nearest: f64,
+    entry: Entry,
+}
+
+/// Bounds on 109 t − 3 Y where eye rays enter a solid: t is a ray's parameter, Y the coordinate of
+/// the pixel's row.
+#[derive(Clone, Copy)]
+pub(super) struct Entry {
+    pub(super) nearest: f64,
+    pub(super) farthest: f64,
 }
 
 /// Tiles in a row, if there are more than [`FEW`] solids.
@@ -98,7 +104,7 @@ impl<'f> ExtentsOfSolids<'f> {
         let solids = arena.alloc_slice_fill_copy(end as usize, 0);
         // Each tile is filled from its end: the farthest first.
         let order = arena.alloc_slice_fill_iter((0..all.len()).map(|solid| solid as u16));
-        let nearest = |solid: u16| all[usize::from(solid)].nearest;
+        let nearest = |solid: u16| all[usize::from(solid)].entry.nearest;
         order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)));
         for &mut solid in order {
             for tile in reached(&all[usize::from(solid)]) {
@@ -126,10 +132,15 @@ impl<'f> ExtentsOfSolids<'f> {
         &self.all[solid].extent
     }
 
+    /// Where eye rays enter a solid.
+    pub(super) fn entry(&self, solid: usize) -> Entry {
+        self.all[solid].entry
+    }
+
     /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of
     /// the solids of [`ExtentsOfSolids::at`] are in increasing order.
     pub(super) fn min_depth(&self, solid: usize, y: f64) -> f64 {
-        let depth = (self.all[solid].nearest + 3.0 * y) / 109.0;
+        let depth = (self.all[solid].entry.nearest + 3.0 * y) / 109.0;
         // 3 Y is a whole number of halves; the sum and the quotient round by u each.
         depth - 2.0 * f64::EPSILON * depth.abs()
     }
@@ -242,19 +253,23 @@ impl<'f> Extents<'f> {
                 let half = (radius, radius * root / 10.0);
                 SolidExtent {
                     extent: Extent::of(&[center], half, rounding, size),
-                    nearest: toward(center) - radius * root - 16.0 * rounding,
+                    entry: Entry {
+                        nearest: toward(center) - radius * root - 16.0 * rounding,
+                        // Rays that touch the sphere enter it last.
+                        farthest: toward(center) + 16.0 * rounding,
+                    },
                 }
             });
             let tetrahedra = scene.tetrahedra().iter().map(|t| {
                 let vertices = t.vertices.map(point);
                 let rounding = rounding(&vertices, 0.0);
-                let nearest = vertices
-                    .map(toward)
-                    .into_iter()
-                    .fold(f64::INFINITY, f64::min);
+                let depths = vertices.map(toward).into_iter();
                 SolidExtent {
                     extent: Extent::of(&vertices, (0.0, 0.0), rounding, size),
-                    nearest: nearest - 16.0 * rounding,
+                    entry: Entry {
+                        nearest: depths.clone().fold(f64::INFINITY, f64::min) - 16.0 * rounding,
+                        farthest: depths.fold(f64::NEG_INFINITY, f64::max) + 16.0 * rounding,
+                    },
                 }
             });
             let all = collect(arena, spheres.chain(tetrahedra));

@@ -1,12 +1,15 @@
 //! The order of solids that a plane separates: which is in front wherever a ray meets both.
 //!
 //! All eye rays have one direction, so they cross a plane that separates two solids from the same
-//! side. Every ray that meets both meets the solid on that side first. This needs no depth, and
-//! holds for a whole frame.
+//! side. Every ray that meets both meets the solid on that side first. This needs no depth test,
+//! and holds for a whole frame. A plane across the eye rays separates most solids of a crowd; planes
+//! between others are looked for if there are few solids.
 
 use bumpalo::Bump;
 
 use crate::number::{Bounded, Real};
+use crate::tracer::arena::collect;
+use crate::tracer::extent::Entry;
 use crate::tracer::frame::looking;
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::vector::Vector;
@@ -17,6 +20,8 @@ const MOST: usize = 16;
 
 /// The order of the solids of a view.
 pub(crate) struct Separation<'f> {
+    /// Where eye rays enter each solid.
+    entries: &'f [Entry],
     /// The number of its solids; 0 if there are more than [`MOST`].
     count: usize,
     /// For each pair, whether the first is in front of the second, if a plane separates them.
@@ -39,7 +44,11 @@ impl<'f> Separation<'f> {
                 in_front[j * count + i] = order.map(|first| !first);
             }
         }
-        Separation { count, in_front }
+        Separation {
+            entries: collect(arena, solids.iter().map(|solid| view.extents.entry(*solid))),
+            count,
+            in_front,
+        }
     }
 
     /// The solid of `met` that is certainly in front of all others, if there is one.
@@ -47,9 +56,11 @@ impl<'f> Separation<'f> {
         if let [only] = met {
             return Some(*only);
         }
-        let is_before = |a: SolidIndex, b: SolidIndex| {
-            let pair = a.0 as usize * self.count + b.0 as usize;
-            a == b || self.in_front.get(pair) == Some(&Some(true))
+        let is_before = |SolidIndex(a): SolidIndex, SolidIndex(b): SolidIndex| {
+            let (a, b) = (a as usize, b as usize);
+            a == b
+                || self.entries[a].farthest < self.entries[b].nearest
+                || self.in_front.get(a * self.count + b) == Some(&Some(true))
         };
         let is_first = |&a: &SolidIndex| met.iter().all(|&b| is_before(a, b));
         met.iter().copied().find(is_first)
