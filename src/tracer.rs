@@ -259,7 +259,7 @@ impl Tracer {
         let by = match (self.kernel, rung) {
             (Kernel::Fast, _) => "f32",
             (Kernel::Double | Kernel::Listing, _) => "f64",
-            (_, Rung::Double) => "f64 with a bound on its error",
+            (_, Rung::Hardware) => "f64 with a bound on its error",
             (_, Rung::DoubleDouble) => "double-doubles with a bound on their error",
             (_, Rung::Arbitrary) => "arbitrary precision",
         };

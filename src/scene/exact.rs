@@ -1,4 +1,5 @@
-//! Facts that exact rational arithmetic decides about a scene, once.
+//! What is found out about a scene once: facts that exact rational arithmetic decides, and lists of
+//! what may shade what, found in f64 with room to spare.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;

@@ -29,7 +29,7 @@ pub(crate) fn with_colors<T>(
     work(&Colors {
         scene,
         stage,
-        ladder: Ladder::new(scene, stage, alpha, size, Rung::Double, &arena),
+        ladder: Ladder::new(scene, stage, alpha, size, Rung::Hardware, &arena),
     })
 }
 

@@ -23,8 +23,8 @@ use crate::stage::Stage;
 /// The arithmetic that settled a pixel, cheapest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rung {
-    /// f64, with a bound on its error where the kernel asks for one.
-    Double,
+    /// f32 or f64, with a bound on its error where the kernel asks for one.
+    Hardware,
     /// Double-doubles with a bound.
     DoubleDouble,
     /// Arbitrary precision.
@@ -150,7 +150,7 @@ impl<R: Real<Doubt = Infallible> + Sync> RowPixels for Plain<'_, R> {
 impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
         let Ok((decision, normal)) = self.picture.decide(column, row);
-        ((decision, self.samples(decision, normal)), Rung::Double)
+        ((decision, self.samples(decision, normal)), Rung::Hardware)
     }
 
     fn explain(&self, column: u32, row: u32, traced: Pixel) -> String {
@@ -222,10 +222,10 @@ fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
 impl<'f> Ladder<'f> {
     /// The answer of the cheapest arithmetic that has one, and which that was.
     fn settle<Q: Question>(&self, question: &Q) -> (Q::Answer, Rung) {
-        if self.lowest == Rung::Double
+        if self.lowest == Rung::Hardware
             && let Ok(answer) = question.answer(&self.bounded)
         {
-            return (answer, Rung::Double);
+            return (answer, Rung::Hardware);
         }
         let double_double = self
             .double_double

@@ -257,7 +257,7 @@ impl Pixels for Listing<'_> {
             Stage::Shadow | Stage::Reflection | Stage::Animation => self.glazed_surface(pixel),
         };
         let samples = color.to_array().map(|sample| sample as f32);
-        ((decision, samples), Rung::Double)
+        ((decision, samples), Rung::Hardware)
     }
 
     /// The outcome alone: the steps are in the listings.

@@ -155,10 +155,10 @@ impl Rules<f64> for MistakenRules<'_, '_> {
         };
         Ok(turned_away
             || own_shadow
-            || surface.is_light() && by_surface(&to_light)?
-            || surface.is_away() && by_surface(&away)?
-            || solids.is_light() && is_shaded(view, &to_light, Some(solid))?
-            || solids.is_away() && is_shaded(reversed, &away, Some(solid))?)
+            || surface.includes_light_side() && by_surface(&to_light)?
+            || surface.includes_far_side() && by_surface(&away)?
+            || solids.includes_light_side() && is_shaded(view, &to_light, Some(solid))?
+            || solids.includes_far_side() && is_shaded(reversed, &away, Some(solid))?)
     }
 
     fn surface_is_in_shadow(
@@ -172,18 +172,18 @@ impl Rules<f64> for MistakenRules<'_, '_> {
         let to_light = picture.view.ray_to_light(point, support);
         let away = self.reversed.view.ray_to_light(point, support);
         Ok(
-            solids.is_light() && is_shaded(&picture.view, &to_light, None)?
-                || solids.is_away() && is_shaded(&self.reversed.view, &away, None)?,
+            solids.includes_light_side() && is_shaded(&picture.view, &to_light, None)?
+                || solids.includes_far_side() && is_shaded(&self.reversed.view, &away, None)?,
         )
     }
 }
 
 impl Toward {
-    fn is_light(self) -> bool {
+    fn includes_light_side(self) -> bool {
         self != Toward::Away
     }
 
-    fn is_away(self) -> bool {
+    fn includes_far_side(self) -> bool {
         self != Toward::Light
     }
 }

@@ -41,19 +41,23 @@
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!
-//! All of this is f64 with proven bounds: a filter. A pixel in doubt is decided by itself
-//! (`ladder.rs`), by the definition of the picture (`pixel.rs`), from which every formula here is
-//! derived.
+//! Edges and visibility are f64 with proven bounds for every kernel: a filter. Shading has bounds
+//! for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the definition
+//! of the picture (`pixel.rs`), from which every formula here is derived.
 //!
 //! A new kind of solid, such as a cylinder, would need
 //!
-//! - in `scene`: a type and its refusals (`file`), a bounding ball (`bounding_ball`), a test whether it lies
-//!   inside of others (`hidden`), what is exactly decided about it (`exact`);
+//! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a bounding ball
+//!   (`bounding_ball`), a test whether it lies inside of others (`hidden`), what is exactly decided
+//!   about it (`exact`), what may shade it (`casters`);
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`,
-//!   `view`, `extent`, `pixel`, `palette` and `explain` name every kind of solid;
-//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/bodies`,
-//!   `visibility/resolve`, and `shade/` where they vary), shadows on planes and on spheres
-//!   (`prepare/shadows`, `shade/caster`), and separating planes (`visibility/separation`).
+//!   `view`, `extent`, `pixel`, `palette`, `decision`, `explain`, `colors` and `mistaken` name every
+//!   kind of solid. Solids are numbered spheres first: look for `spheres.len()`;
+//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/solids`,
+//!   `prepare/bodies`, `visibility/resolve`, and `shade/` where they vary), shadows on planes and on
+//!   spheres (`prepare/shadows`, `shade/caster`), and separating planes (`visibility/separation`);
+//! - in `diagnosis`: what other tracers may get wrong about it (`hypotheses`); in the tests: the
+//!   oracle (`tests/oracle.rs`).
 //!
 //! A [`Region`](edges::region::Region) is convex, and has at most one ellipse. The outline of a
 //! cylinder, two ellipses and what lies between them, would need several regions.

@@ -20,7 +20,7 @@ pub struct Tally {
 impl Tally {
     pub(super) fn count(&mut self, rung: Rung) {
         match rung {
-            Rung::Double => {}
+            Rung::Hardware => {}
             Rung::DoubleDouble => self.double_double += 1,
             Rung::Arbitrary => self.arbitrary += 1,
         }

@@ -73,9 +73,10 @@ pub(super) struct EdgeFunctions<R> {
     /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
     /// where it runs along.
     face_signs: [Ordering; 4],
-    /// The moment of each of [`EDGES`]: (n_i × n_j) × d without its positive factor. Edges between
+    /// For each of [`EDGES`], the normal of the plane in which lines meet it: (n_i × n_j) × d
+    /// without its positive factor. Edges between
     /// two faces that lines leave or run along are never asked for.
-    moments: [Vector<R>; 6],
+    edge_normals: [Vector<R>; 6],
 }
 
 impl<R> EdgeFunctions<R> {
@@ -122,7 +123,7 @@ impl<R: Real> Tetrahedron<R> {
         direction: &Direction<R>,
         face_signs: [Ordering; 4],
     ) -> EdgeFunctions<R> {
-        let moments = EDGES.map(|(i, j, [from, to])| {
+        let edge_normals = EDGES.map(|(i, j, [from, to])| {
             if face_signs[i].is_ge() && face_signs[j].is_ge() {
                 return Vector::exact(DVec3::ZERO);
             }
@@ -131,7 +132,7 @@ impl<R: Real> Tetrahedron<R> {
         });
         EdgeFunctions {
             face_signs,
-            moments,
+            edge_normals,
         }
     }
 
@@ -182,7 +183,7 @@ impl<R: Real> Tetrahedron<R> {
     /// If lines enter i and leave j, there t_i ≤ t_j; if they enter both, there t_i ≥ t_j.
     fn side(&self, edge: usize, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
         HalfSpace {
-            normal: functions.moments[edge],
+            normal: functions.edge_normals[edge],
             at: self.vertices[EDGES[edge].2[0]],
             closed: true,
             border: None,

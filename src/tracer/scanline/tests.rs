@@ -67,7 +67,7 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
             (Stage::Reflection, 2.1),
         ] {
             let arena = Arena::default();
-            let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Double, &arena);
+            let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
             let name = text.lines().next().unwrap_or("built-in");
             // Every frame is culled, or none.
             for cull_from in [0, u64::MAX] {
