@@ -74,8 +74,8 @@ pub(super) struct EdgeFunctions<R> {
     /// where it runs along.
     face_signs: [Ordering; 4],
     /// For each of [`EDGES`], the normal of the plane in which lines meet it: (n_i × n_j) × d
-    /// without its positive factor. Edges between
-    /// two faces that lines leave or run along are never asked for.
+    /// without its positive factor. Edges between two faces that lines leave or run along are
+    /// never asked for.
     edge_normals: [Vector<R>; 6],
 }
 
