@@ -48,6 +48,7 @@ impl Deref for Image {
     }
 }
 
+/// By the values of the floats: −0 equals 0, and a NaN equals nothing.
 impl PartialEq for Image {
     fn eq(&self, other: &Image) -> bool {
         self.raster == other.raster
@@ -82,7 +83,8 @@ impl Image {
         self.raster.width()
     }
 
-    /// All 3 N² floats, to be written: red, green, blue of each pixel, rows from the bottom.
+    /// All 3 N² floats, to be written: red, green, blue of each pixel, rows from the bottom. The next
+    /// [`Tracer::retrace`](crate::Tracer::retrace) into this picture writes all of it.
     pub fn samples_mut(&mut self) -> &mut [f32] {
         self.samples_of_frame(0)
     }

@@ -8,9 +8,9 @@ use crate::camera::{ROUND, frame_angle};
 /// How α advances while the animation plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// By elapsed time, in radians per second, modulo 2π.
+    /// By elapsed time, in radians per second, modulo 2π. Finite; below 0 it turns backwards.
     Speed(f64),
-    /// By so many radians at each redisplay; once α is beyond 6.28 it starts again at 0.
+    /// By so many radians at each redisplay; once α is beyond 6.28 it starts again at 0. Finite.
     Step(f64),
 }
 
