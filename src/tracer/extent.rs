@@ -58,10 +58,10 @@ pub(super) struct Entry {
     pub(super) farthest: f64,
 }
 
-/// Tiles in a row, if there are more than [`FEW`] solids.
+/// Tiles in a row, if there are more than [`MAX_UNTILED`] solids.
 const TILES: u32 = 32;
 /// So many solids share one tile.
-const FEW: usize = 16;
+const MAX_UNTILED: usize = 16;
 
 impl<'f> ExtentsOfSolids<'f> {
     const NONE: ExtentsOfSolids<'static> = ExtentsOfSolids {
@@ -74,7 +74,7 @@ impl<'f> ExtentsOfSolids<'f> {
     };
 
     fn new(all: &'f [SolidExtent], size: u32, arena: &'f Bump) -> Self {
-        let tiles = if all.len() > FEW { TILES } else { 1 };
+        let tiles = if all.len() > MAX_UNTILED { TILES } else { 1 };
         let side = size.div_ceil(tiles);
         let tiles_per_row = size.div_ceil(side);
         let reached = |SolidExtent { extent, .. }: &SolidExtent| {

@@ -20,17 +20,17 @@ use super::comparison::{self, Comparing};
 use super::content::{Content, Redisplay, STAND_IN};
 use super::desktop::event_loop;
 use super::frame_rate::FrameRate;
-use super::front::{Front, POLL};
 use super::information::Times;
 use super::playback::Playback;
 use super::renderer::{Renderer, Renderers};
 use super::tracing::{Frame, Pictures, Reply, Traced, Tracing};
+use super::ui::{POLL, Ui};
 use super::watch::{Change, Watch, Watched};
 use super::window::Opening;
 use super::{Event, Options, ViewerError};
 
 /// How long a redisplay waits for the next picture before it draws the last one again.
-const PATIENCE: Duration = Duration::from_millis(100);
+const PICTURE_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// How long a renderer is at a picture before that is said.
 const SLOW: Duration = Duration::from_millis(500);
@@ -71,7 +71,7 @@ pub(super) fn run(
         watch: watch.map_err(ViewerError::Thread)?,
         failure_of_renderer: None,
         content: Content::default(),
-        front: Front::new(Subject::Scene),
+        ui: Ui::new(Subject::Scene),
         next_frame: started,
         frame_time: Duration::ZERO,
         frame_rate: FrameRate::default(),
@@ -115,7 +115,7 @@ struct App<'a> {
     /// A frame of which there is no picture, and why.
     failure_of_renderer: Option<(Frame, String)>,
     content: Content,
-    front: Front,
+    ui: Ui,
     /// When the next frame of the playing animation is due.
     next_frame: Instant,
     /// How long the display shows a frame.
@@ -147,7 +147,7 @@ impl App<'_> {
 
     /// Ends the viewer after the last event.
     fn leave(mut self, ended_well: bool) -> Result<(), ViewerError> {
-        self.front.counts.traces = self.tracing.made();
+        self.ui.counts.traces = self.tracing.made();
         for reply in self.tracing.finish() {
             if let Reply::Saved(saved) = reply {
                 (self.report)(saved.map_or_else(Event::NotSaved, Event::Saved));
@@ -159,7 +159,7 @@ impl App<'_> {
         if !ended_well {
             return Err(ViewerError::Lost);
         }
-        (self.report)(Event::Left(self.front.counts));
+        (self.report)(Event::Left(self.ui.counts));
         Ok(())
     }
 
@@ -209,7 +209,7 @@ impl App<'_> {
         if self.playing() && !self.waiting() {
             self.playback.advance(now);
             // The next picture is traced over this one, unless its pixels are looked at.
-            if !self.front.hud.names_pixels() {
+            if !self.ui.hud.names_pixels() {
                 let next = self.wanted();
                 self.content.give_back(&next);
             }
@@ -221,20 +221,19 @@ impl App<'_> {
     /// anything to upload.
     fn upload(&mut self) -> Result<bool, ViewerError> {
         let (Some(gl_window), Some((image, rows))) =
-            (&mut self.front.gl_window, self.content.to_upload())
+            (&mut self.ui.gl_window, self.content.to_upload())
         else {
             return Ok(false);
         };
-        self.times.upload = gl_window.upload(image, rows, self.front.hud.information)?;
-        self.front.counts.uploads += 1;
+        self.times.upload = gl_window.upload(image, rows, self.ui.hud.information)?;
+        self.ui.counts.uploads += 1;
         self.content.uploaded();
         Ok(true)
     }
 
     /// Checks that the driver shows what is uploaded, once in each size of the window.
     fn check_pixels(&mut self) {
-        if let (Some(gl_window), Some(image)) =
-            (&mut self.front.gl_window, self.content.in_texture())
+        if let (Some(gl_window), Some(image)) = (&mut self.ui.gl_window, self.content.in_texture())
             && let Some(differs) = gl_window.check_pixels(image)
         {
             let renderer = gl_window.renderer().to_owned();
@@ -245,19 +244,19 @@ impl App<'_> {
     /// Draws the content, and requests the next picture if there is to be one.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let start = Instant::now();
-        let overdue = std::mem::take(&mut self.front.overdue);
+        let overdue = std::mem::take(&mut self.ui.overdue);
         event_loop.set_control_flow(ControlFlow::Wait);
-        let visible = self.front.visible();
+        let visible = self.ui.visible();
         self.watch.hold(!visible);
         if !visible {
             self.playback.hold();
             self.frame_rate.stop();
-            if self.front.is_minimized() {
+            if self.ui.is_minimized() {
                 event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             }
             return Ok(());
         }
-        if self.front.counts.draws == 0 && self.content.traced().is_some() {
+        if self.ui.counts.draws == 0 && self.content.traced().is_some() {
             // Opening the window was no part of the animation.
             self.playback.count_from(start - self.frame_time);
         }
@@ -275,36 +274,36 @@ impl App<'_> {
         }
         let redisplay = self.content.redisplay(is_new, self.waiting(), overdue);
         if redisplay == Redisplay::Wait {
-            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
+            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PICTURE_TIMEOUT));
             return Ok(());
         }
         if let Some(until) = self
-            .front
+            .ui
             .gl_window
             .as_mut()
             .and_then(|gl_window| gl_window.awaits_size(start))
         {
             // Drawn in the new size at once, instead of in the old one first.
-            self.front.overdue |= overdue;
+            self.ui.overdue |= overdue;
             event_loop.set_control_flow(ControlFlow::WaitUntil(until));
             return Ok(());
         }
-        let change = self.front.hud.expire(start);
+        let change = self.ui.hud.expire(start);
         if redisplay == Redisplay::Clear {
             // A renderer that is slow with its first picture is noticed.
-            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PATIENCE));
-            return self.front.clear();
+            event_loop.set_control_flow(ControlFlow::WaitUntil(start + PICTURE_TIMEOUT));
+            return self.ui.clear();
         }
         let values = self.hud_values();
-        let Some(draw) = self.front.draw(&values, self.front.hud.information)? else {
+        let Some(draw) = self.ui.draw(&values, self.ui.hud.information)? else {
             self.content.lose_texture();
             event_loop.set_control_flow(ControlFlow::WaitUntil(start + POLL));
             return Ok(());
         };
         self.times.draw = draw;
         self.times.display = self.frame_rate.per_second();
-        if self.front.counts.draws == 1
-            && let Some(gl_window) = &self.front.gl_window
+        if self.ui.counts.draws == 1
+            && let Some(gl_window) = &self.ui.gl_window
         {
             (self.report)(Event::FirstFrame {
                 after: self.started.elapsed(),
@@ -319,7 +318,7 @@ impl App<'_> {
         self.next_frame = start + self.frame_time;
         // The time that a comparison or a renderer takes is seen to pass.
         let passes = self.content.is_comparing() || self.waits_for_renderer();
-        let next = passes.then(|| start + PATIENCE);
+        let next = passes.then(|| start + PICTURE_TIMEOUT);
         if let Some(end) = change.into_iter().chain(next).min() {
             event_loop.set_control_flow(ControlFlow::WaitUntil(end));
         }
@@ -330,14 +329,14 @@ impl App<'_> {
     /// Whether a frame that is drawn now is the last one.
     fn is_last(&self) -> bool {
         self.exit_after_frames
-            .is_some_and(|frames| self.front.counts.draws + 1 >= frames)
+            .is_some_and(|frames| self.ui.counts.draws + 1 >= frames)
     }
 
     /// Polls the display for the state of the window: only now and then, since each time is a round
     /// trip.
     fn poll_window(&mut self) {
-        self.front.poll();
-        if let Some(gl_window) = &self.front.gl_window {
+        self.ui.poll();
+        if let Some(gl_window) = &self.ui.gl_window {
             self.frame_time = gl_window.frame_time();
         }
         self.retitle();
@@ -347,7 +346,7 @@ impl App<'_> {
     fn schedule(&mut self, event_loop: &ActiveEventLoop) {
         let last = self
             .exit_after_frames
-            .is_some_and(|frames| self.front.counts.draws >= frames);
+            .is_some_and(|frames| self.ui.counts.draws >= frames);
         if last {
             event_loop.exit();
         } else if !self.waiting() && (self.playing() || self.exit_after_frames.is_some()) {
@@ -360,7 +359,7 @@ impl App<'_> {
     fn draw_in_time(&self, event_loop: &ActiveEventLoop) {
         if Instant::now() < self.next_frame {
             event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_frame));
-        } else if let Some(gl_window) = &self.front.gl_window {
+        } else if let Some(gl_window) = &self.ui.gl_window {
             gl_window.window().request_redraw();
         }
     }
@@ -382,14 +381,14 @@ impl App<'_> {
                 }
                 Reply::Saved(saved) => {
                     let event = saved.map_or_else(Event::NotSaved, Event::Saved);
-                    self.front.hud.say(event.to_string());
+                    self.ui.hud.say(event.to_string());
                     (self.report)(event);
-                    self.front.touch();
+                    self.ui.touch();
                 }
                 Reply::Explained(pixel, text) => {
-                    self.front.hud.inspect(pixel, text.clone());
+                    self.ui.hud.inspect(pixel, text.clone());
                     (self.report)(Event::Inspected(text));
-                    self.front.touch();
+                    self.ui.touch();
                 }
                 Reply::Refused(frame, reason) => self.refuse(frame, reason)?,
                 Reply::Failed(error) => return Err(error),
@@ -410,7 +409,7 @@ impl App<'_> {
                 comparison::Reply::Done(compared) => self.content.comparison_came(compared),
                 comparison::Reply::Failed(error) => return Err(error),
             }
-            self.front.touch();
+            self.ui.touch();
         }
         Ok(())
     }
@@ -424,7 +423,7 @@ impl App<'_> {
             }
             // Another kernel has one.
             Renderer::Kernel(_) => {
-                self.front.hud.say(reason.to_string());
+                self.ui.hud.say(reason.to_string());
                 if self.renderers.shown() == &frame.renderer {
                     self.renderers.show_next();
                     self.retitle();
@@ -454,7 +453,7 @@ impl App<'_> {
                 }
             }
         }
-        self.front.touch();
+        self.ui.touch();
         Ok(())
     }
 
@@ -495,7 +494,7 @@ impl App<'_> {
             }
         }
         self.request();
-        self.front.touch();
+        self.ui.touch();
     }
 
     /// Requests the errors of the picture, if they are to be shown.
@@ -507,7 +506,7 @@ impl App<'_> {
 
     /// Writes stage, kernel, α and frames a second into the title, where they changed.
     fn retitle(&mut self) {
-        let Some(gl_window) = &self.front.gl_window else {
+        let Some(gl_window) = &self.ui.gl_window else {
             return;
         };
         let tail = match (self.stage, self.frame_rate.per_second()) {
@@ -533,7 +532,7 @@ impl App<'_> {
             magnification: 1,
             panel: false,
         };
-        self.frame_time = self.front.open(event_loop, opening)?.frame_time();
+        self.frame_time = self.ui.open(event_loop, opening)?.frame_time();
         (self.report)(Event::Opened);
         self.content.lose_texture();
         self.retitle();

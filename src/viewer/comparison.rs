@@ -19,7 +19,7 @@ use super::{Options, ViewerError};
 /// Wrong pixels are ringed one by one in tiles of so many pixels a side, as long as a tile has few
 /// of them.
 const TILE: usize = 16;
-const FEW: usize = 4;
+const MAX_RINGED: usize = 4;
 
 /// Rings are for single pixels; where there are more than this, nobody looks for one.
 const MAX_RINGS: usize = 512;
@@ -298,11 +298,11 @@ fn rings(wrong: &[Option<Wrong>], size: usize) -> Vec<(UVec2, Wrong)> {
         let Some(wrong) = *wrong else { continue };
         let (column, row) = (number % size, number / size);
         let tile = &mut found[row / TILE * tiles + column / TILE];
-        if tile.len() <= FEW {
+        if tile.len() <= MAX_RINGED {
             tile.push((UVec2::new(column as u32, row as u32), wrong));
         }
     }
-    let few = found.into_iter().filter(|tile| tile.len() <= FEW);
+    let few = found.into_iter().filter(|tile| tile.len() <= MAX_RINGED);
     few.flatten().take(MAX_RINGS).collect()
 }
 

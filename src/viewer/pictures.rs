@@ -17,8 +17,8 @@ use crate::screen::driver_limits;
 
 use super::action::{Action, Side, Subject};
 use super::desktop::event_loop;
-use super::front::{Front, POLL, Wish};
 use super::hud::{HudValues, Part, VALUES};
+use super::ui::{POLL, Ui, Wish};
 use super::window::Opening;
 use super::worker::Worker;
 use super::{Event, ViewerError, snapshot};
@@ -55,7 +55,7 @@ pub(super) fn compare(
         saving: saving.map_err(ViewerError::Thread)?,
         shown: Side::A,
         uploaded: None,
-        front: Front::new(Subject::Pictures),
+        ui: Ui::new(Subject::Pictures),
         report,
         failure: None,
     };
@@ -67,7 +67,7 @@ pub(super) fn compare(
         return Err(failure);
     }
     ended.map_err(|_| ViewerError::Lost)?;
-    (pictures.report)(Event::Left(pictures.front.counts));
+    (pictures.report)(Event::Left(pictures.ui.counts));
     Ok(())
 }
 
@@ -79,45 +79,45 @@ struct Pictures<'a> {
     shown: Side,
     /// What the texture holds.
     uploaded: Option<Side>,
-    front: Front,
+    ui: Ui,
     report: &'a mut dyn FnMut(Event),
     failure: Option<ViewerError>,
 }
 
 impl ApplicationHandler for Pictures<'_> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.front.gl_window.is_none() {
+        if self.ui.gl_window.is_none() {
             let opened = self.open(event_loop);
             self.check(event_loop, opened);
         }
     }
 
     fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
-        self.front.close();
+        self.ui.close();
     }
 
     fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
-        self.front.close();
+        self.ui.close();
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if let StartCause::ResumeTimeReached { .. } = cause {
             event_loop.set_control_flow(ControlFlow::Wait);
-            self.front.ask_for_redraw();
+            self.ui.ask_for_redraw();
         }
     }
 
     fn user_event(&mut self, _event_loop: &ActiveEventLoop, (): ()) {
         while let Some(saved) = self.saving.reply() {
             let event = saved.map_or_else(Event::NotSaved, Event::Saved);
-            self.front.hud.say(event.to_string());
+            self.ui.hud.say(event.to_string());
             (self.report)(event);
-            self.front.touch();
+            self.ui.touch();
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        match self.front.window_event(event_loop, event) {
+        match self.ui.window_event(event_loop, event) {
             Some(Wish::Redraw) => {
                 let drawn = self.redraw(event_loop);
                 self.check(event_loop, drawn);
@@ -141,7 +141,7 @@ impl Pictures<'_> {
             magnification: (MAGNIFIED / picture.max_element()).max(1),
             panel: true,
         };
-        self.front.open(event_loop, opening)?;
+        self.ui.open(event_loop, opening)?;
         (self.report)(Event::Opened);
         self.uploaded = None;
         self.retitle();
@@ -151,11 +151,11 @@ impl Pictures<'_> {
     fn show(&mut self, side: Side) {
         self.shown = side;
         self.retitle();
-        self.front.touch();
+        self.ui.touch();
     }
 
     fn retitle(&self) {
-        if let Some(gl_window) = &self.front.gl_window {
+        if let Some(gl_window) = &self.ui.gl_window {
             let title = format!("firsthit — {}", self.pair.title(self.shown));
             gl_window.window().set_title(&title);
         }
@@ -164,28 +164,28 @@ impl Pictures<'_> {
     /// Keeps what there is to say about a pixel, column and row.
     fn explain(&mut self, pixel: UVec2) {
         let text = self.pair.pixel(Some(pixel));
-        self.front.hud.inspect(pixel, text.clone());
+        self.ui.hud.inspect(pixel, text.clone());
         (self.report)(Event::Inspected(text));
-        self.front.touch();
+        self.ui.touch();
     }
 
     /// Draws the picture, and what there is to say beside it.
     fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
         let now = Instant::now();
         event_loop.set_control_flow(ControlFlow::Wait);
-        if !self.front.visible() {
+        if !self.ui.visible() {
             return Ok(());
         }
         self.upload()?;
-        let change = self.front.hud.expire(now);
+        let change = self.ui.hud.expire(now);
         let values = self.hud_values();
-        if self.front.draw(&values, false)?.is_none() {
+        if self.ui.draw(&values, false)?.is_none() {
             self.uploaded = None;
             event_loop.set_control_flow(ControlFlow::WaitUntil(now + POLL));
             return Ok(());
         }
-        if self.front.counts.draws == 1
-            && let Some(gl_window) = &self.front.gl_window
+        if self.ui.counts.draws == 1
+            && let Some(gl_window) = &self.ui.gl_window
         {
             (self.report)(Event::FirstFrame {
                 after: self.started.elapsed(),
@@ -201,13 +201,13 @@ impl Pictures<'_> {
     /// Uploads the picture that is to be shown, unless the texture holds it, and checks once in a
     /// size of the window that the driver shows it.
     fn upload(&mut self) -> Result<(), ViewerError> {
-        let Some(gl_window) = &mut self.front.gl_window else {
+        let Some(gl_window) = &mut self.ui.gl_window else {
             return Ok(());
         };
         let image = self.pair.image(self.shown);
         if self.uploaded != Some(self.shown) {
             gl_window.upload(image, 0..image.height(), false)?;
-            self.front.counts.uploads += 1;
+            self.ui.counts.uploads += 1;
             self.uploaded = Some(self.shown);
         }
         if let Some(differs) = gl_window.check_pixels(image) {
@@ -227,12 +227,12 @@ impl Pictures<'_> {
         };
         let pointed = Part {
             heading: "Pixel under the pointer",
-            text: self.pair.pixel(self.front.pointed_pixel()),
+            text: self.pair.pixel(self.ui.pointed_pixel()),
             hanging: VALUES,
             scale: None,
         };
         let mut on = vec![Action::Show(self.shown)];
-        on.extend(self.front.hud.keys_are_shown().then_some(Action::Help));
+        on.extend(self.ui.hud.keys_are_shown().then_some(Action::Help));
         HudValues {
             parts: vec![pictures, pointed],
             on,

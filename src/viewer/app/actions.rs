@@ -44,8 +44,8 @@ impl App<'_> {
             Action::Errors => self.toggle_errors(),
             Action::NextKernel => self.renderers.show_next(),
             Action::Information => {
-                self.front.hud.information = !self.front.hud.information;
-                self.front.touch();
+                self.ui.hud.information = !self.ui.hud.information;
+                self.ui.touch();
             }
             // Those of the window itself, and of another one.
             Action::Show(_)
@@ -62,12 +62,12 @@ impl App<'_> {
         }
         self.retitle();
         if self.playing() {
-            self.front.ask_for_redraw();
+            self.ui.ask_for_redraw();
         } else {
             self.request();
             // That a renderer is slow is written over the last picture.
             if self.waits_for_renderer() {
-                self.front.ask_for_redraw();
+                self.ui.ask_for_redraw();
             }
         }
     }
@@ -75,11 +75,11 @@ impl App<'_> {
     /// Shows the errors of the picture, or the picture again.
     fn toggle_errors(&mut self) {
         self.content.toggle_errors(Instant::now());
-        self.front.hud.errors = self.content.shows_errors();
+        self.ui.hud.errors = self.content.shows_errors();
         // Errors that are not shown are not kept.
         self.comparing.forget();
         self.compare();
-        self.front.touch();
+        self.ui.touch();
     }
 
     /// Pauses the animation if it is on.

@@ -6,29 +6,29 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
 use super::App;
-use crate::viewer::front::Wish;
+use crate::viewer::ui::Wish;
 
 impl ApplicationHandler for App<'_> {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.front.gl_window.is_none() {
+        if self.ui.gl_window.is_none() {
             let opened = self.open(event_loop);
             self.check(event_loop, opened);
         }
     }
 
     fn suspended(&mut self, _event_loop: &ActiveEventLoop) {
-        self.front.close();
+        self.ui.close();
     }
 
     fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
-        self.front.close();
+        self.ui.close();
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if let StartCause::ResumeTimeReached { .. } = cause {
             event_loop.set_control_flow(ControlFlow::Wait);
-            self.front.overdue = true;
-            self.front.ask_for_redraw();
+            self.ui.overdue = true;
+            self.ui.ask_for_redraw();
         }
     }
 
@@ -38,7 +38,7 @@ impl ApplicationHandler for App<'_> {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        match self.front.window_event(event_loop, event) {
+        match self.ui.window_event(event_loop, event) {
             None => {}
             Some(Wish::Redraw) => {
                 let drawn = self.redraw(event_loop);

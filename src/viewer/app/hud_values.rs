@@ -10,14 +10,14 @@ use crate::viewer::information::{information, name_pixel};
 impl App<'_> {
     /// What the head-up display says about the picture.
     pub(super) fn hud_values(&self) -> HudValues {
-        let (Some(gl_window), Some(traced)) = (&self.front.gl_window, self.content.traced()) else {
+        let (Some(gl_window), Some(traced)) = (&self.ui.gl_window, self.content.traced()) else {
             return HudValues::default();
         };
         let mut values = HudValues {
             notice: self.notice(),
             ..HudValues::default()
         };
-        if self.front.hud.information {
+        if self.ui.hud.information {
             values.parts.push(Part {
                 heading: "Information",
                 text: information(traced, self.size, self.times),
@@ -25,8 +25,8 @@ impl App<'_> {
                 scale: None,
             });
         }
-        if self.front.hud.names_pixels()
-            && let Some(place) = self.front.pointer.place()
+        if self.ui.hud.names_pixels()
+            && let Some(place) = self.ui.pointer.place()
             && let Some(pixel) = gl_window.picture_pixel(place)
         {
             // Where the samples were given back, the next picture's come soon.
@@ -57,8 +57,8 @@ impl App<'_> {
                 Action::Pause,
             ),
             (self.content.shows_errors(), Action::Errors),
-            (self.front.hud.information, Action::Information),
-            (self.front.hud.keys_are_shown(), Action::Help),
+            (self.ui.hud.information, Action::Information),
+            (self.ui.hud.keys_are_shown(), Action::Help),
         ] {
             values.on.extend(on.then_some(action));
         }

@@ -7,7 +7,7 @@ use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::window::Window;
 
 /// How long a window that was asked for another size is not drawn: a window manager may refuse.
-const PATIENCE: Duration = Duration::from_millis(100);
+const RESIZE_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// What a window was asked to become.
 #[derive(Clone, Copy, Default)]
@@ -58,7 +58,7 @@ impl Growth {
     }
 
     fn ask(&mut self, window: &Window, size: UVec2) -> Option<PhysicalSize<u32>> {
-        self.awaited = Some(Instant::now() + PATIENCE);
+        self.awaited = Some(Instant::now() + RESIZE_TIMEOUT);
         window.request_inner_size(PhysicalSize::new(size.x, size.y))
     }
 

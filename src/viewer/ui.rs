@@ -22,7 +22,7 @@ pub(super) const POLL: Duration = Duration::from_millis(250);
 
 /// The window and what it is handled with.
 #[derive(Default)]
-pub(super) struct Front {
+pub(super) struct Ui {
     /// `None` before the first `resumed`, and on systems that take the window away meanwhile.
     pub(super) gl_window: Option<GlWindow>,
     /// `None` without a window.
@@ -48,12 +48,12 @@ pub(super) enum Wish {
     Explain(UVec2),
 }
 
-impl Front {
+impl Ui {
     /// No window yet; it will show `subject`.
-    pub(super) fn new(subject: Subject) -> Front {
-        Front {
+    pub(super) fn new(subject: Subject) -> Ui {
+        Ui {
             hud: Hud::new(subject),
-            ..Front::default()
+            ..Ui::default()
         }
     }
 

@@ -6,7 +6,7 @@ use winit::event::{ElementState, KeyEvent, MouseButton, WindowEvent};
 use winit::event_loop::ActiveEventLoop;
 use winit::keyboard::{Key, NamedKey};
 
-use super::{Front, Wish};
+use super::{Ui, Wish};
 use crate::viewer::action::Action;
 use crate::viewer::key_press::KeyPress;
 use crate::viewer::pointer::Gesture;
@@ -14,7 +14,7 @@ use crate::viewer::pointer::Gesture;
 /// A notch of the wheel scrolls the panel by so many lines.
 const SCROLLED: isize = 3;
 
-impl Front {
+impl Ui {
     /// Handles an event of the window; what it asks of what is shown, if anything.
     pub(in crate::viewer) fn window_event(
         &mut self,
