@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use bumpalo::Bump;
 
 use super::arena::collect;
-use super::frame::{Frame, reflect};
+use super::frame::{EYE_SQUARED, EYE_Y, EYE_Z, Frame, PIXEL, reflect};
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use crate::number::Bounded;
@@ -124,7 +124,7 @@ impl<'f> ExtentsOfSolids<'f> {
 
     /// Y of a row.
     pub(super) fn y_of(&self, row: u32) -> f64 {
-        3.0 * (f64::from(row) - self.half)
+        PIXEL * (f64::from(row) - self.half)
     }
 
     /// The extent of a solid.
@@ -140,7 +140,7 @@ impl<'f> ExtentsOfSolids<'f> {
     /// A lower bound on the parameter at which the eye ray of a pixel meets a solid. The bounds of
     /// the solids of [`ExtentsOfSolids::at`] are in increasing order.
     pub(super) fn min_depth(&self, solid: usize, y: f64) -> f64 {
-        let depth = (self.all[solid].entry.nearest + 3.0 * y) / 109.0;
+        let depth = (self.all[solid].entry.nearest + EYE_Y * y) / EYE_SQUARED;
         // 3 Y is a whole number of halves; the sum and the quotient round by u each.
         depth - 2.0 * f64::EPSILON * depth.abs()
     }
@@ -197,12 +197,14 @@ impl Extent {
         let half = f64::from(size) / 2.0;
         // The ray through a point p meets the screen, z = 3N/2, at y = p.y + (3N/2 − p.z) · 3/10.
         let columns = points.iter().map(|p| p.x);
-        let rows = points.iter().map(|p| p.y + (3.0 * half - p.z) * 0.3);
+        let rows = points
+            .iter()
+            .map(|p| p.y + (PIXEL * half - p.z) * (EYE_Y / EYE_Z));
         let range = |coordinates: &mut dyn Iterator<Item = f64>, half_length: f64| {
             let ends = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
                 (x.min(low), x.max(high))
             });
-            let number = |x: f64| x / 3.0 + half;
+            let number = |x: f64| x / PIXEL + half;
             let (low, high) = (
                 number(ends.0 - half_length - rounding),
                 number(ends.1 + half_length + rounding),
@@ -234,7 +236,7 @@ impl<'f> Extents<'f> {
         // To turn, scale, reflect and project a point takes fewer than 32 roundings, each by at
         // most u = 2⁻⁵³ of these magnitudes: 2⁻⁴⁰ of them is more than all roundings, and far less
         // than a pixel.
-        let least = 3.0 * f64::from(size) + 2.0 * frame.mirror(scene).unwrap_or(0.0).abs();
+        let least = PIXEL * f64::from(size) + 2.0 * frame.mirror(scene).unwrap_or(0.0).abs();
         let rounding = |points: &[Vector<f64>], radius: f64| {
             let magnitudes = points.iter().map(|p| p.x.abs() + p.y.abs() + p.z.abs());
             let largest = magnitudes.fold(0.0, f64::max);
@@ -242,15 +244,17 @@ impl<'f> Extents<'f> {
         };
         let solids = |mirror: Option<f64>| {
             let point = |p| reflect(frame.point(p), mirror);
-            let root = 109_f64.sqrt();
+            let root = EYE_SQUARED.sqrt();
             // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
-            let toward = |p: Vector<f64>| 15.0 * f64::from(size) - (3.0 * p.y + 10.0 * p.z);
+            let toward = |p: Vector<f64>| {
+                EYE_Z * PIXEL * f64::from(size) / 2.0 - (EYE_Y * p.y + EYE_Z * p.z)
+            };
             let spheres = scene.spheres().iter().map(|sphere| {
                 let center = point(sphere.center);
                 let radius = sphere.radius * frame.scale;
                 let rounding = rounding(&[center], radius);
                 // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
-                let half = (radius, radius * root / 10.0);
+                let half = (radius, radius * root / EYE_Z);
                 SolidExtent {
                     extent: Extent::of(&[center], half, rounding, size),
                     entry: Entry {

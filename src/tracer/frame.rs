@@ -19,6 +19,16 @@ use super::vector::Vector;
 use crate::number::Real;
 use crate::scene::Scene;
 
+/// The width and height of a pixel in view space.
+pub(super) const PIXEL: f64 = 3.0;
+
+/// Eye rays go along d = (0, −[`EYE_Y`], −[`EYE_Z`]) in view space.
+pub(super) const EYE_Y: f64 = 3.0;
+/// See [`EYE_Y`].
+pub(super) const EYE_Z: f64 = 10.0;
+/// |d|² = 109.
+pub(super) const EYE_SQUARED: f64 = EYE_Y * EYE_Y + EYE_Z * EYE_Z;
+
 /// The rotation and the scale from the scene into view space.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<R> {
@@ -119,8 +129,8 @@ impl<R: Real> Frame<R> {
 impl Frame<f64> {
     /// The direction of eye rays in the scene's own axes; of mirrored rays, reflected back.
     pub(super) fn looking_in_scene(&self, mirrored: bool) -> DVec3 {
-        let down = if mirrored { 3.0 } else { -3.0 };
-        DVec3::new(-10.0 * self.sin, down, -10.0 * self.cos)
+        let y = if mirrored { EYE_Y } else { -EYE_Y };
+        DVec3::new(-EYE_Z * self.sin, y, -EYE_Z * self.cos)
     }
 }
 
@@ -134,9 +144,9 @@ pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R>
 
 /// The direction of every eye ray: −10 w, of length √109.
 pub(super) fn looking<R: Real>() -> Direction<R> {
-    let vector = Vector::new(R::exact(0.0), R::exact(-3.0), R::exact(-10.0));
+    let vector = Vector::new(R::exact(0.0), R::exact(-EYE_Y), R::exact(-EYE_Z));
     Direction {
         vector,
-        squared_length: R::exact(109.0),
+        squared_length: R::exact(EYE_SQUARED),
     }
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::arena::Room;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
-use super::frame::{Frame, looking};
+use super::frame::{Frame, PIXEL, looking};
 use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
@@ -233,7 +233,7 @@ impl<'f, R: Real> Picture<'f, R> {
     pub(super) fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
         let half = f64::from(self.size) / 2.0;
         let origin = [f64::from(column) - half, f64::from(row) - half, half]
-            .map(|coordinate| R::exact(3.0 * coordinate));
+            .map(|coordinate| R::exact(PIXEL * coordinate));
         Line {
             origin: Vector::new(origin[0], origin[1], origin[2]),
             direction: looking(),

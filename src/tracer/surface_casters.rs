@@ -1,6 +1,6 @@
 //! Which solids may stand between a pixel of the surface and the light.
 
-use super::frame::Frame;
+use super::frame::{EYE_Z, Frame, PIXEL};
 use super::surface::Surface;
 use super::vector::Vector;
 use crate::number::{Bounded, Real};
@@ -37,9 +37,9 @@ impl<'f> CastersOnSurface<'f> {
         let [x, y] = [column, row].map(|number| f64::from(number) - self.half);
         let depth = Bounded::exact(y) - self.height_in_pixels;
         let point = Vector::new(
-            Bounded::exact(3.0 * x),
+            Bounded::exact(PIXEL * x),
             self.surface.height,
-            Bounded::exact(3.0 * self.half) - Bounded::exact(10.0) * depth,
+            Bounded::exact(PIXEL * self.half) - Bounded::exact(EYE_Z) * depth,
         );
         let [x, z] = self.surface.along_sides(point).map(|along| {
             let along = along * self.inverse;

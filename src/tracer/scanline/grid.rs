@@ -3,6 +3,8 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+use crate::tracer::frame::PIXEL;
+
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;
 
@@ -26,14 +28,14 @@ impl Grid {
         Grid {
             size,
             half,
-            max: 3.0 * half,
+            max: PIXEL * half,
         }
     }
 
     /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
     #[inline]
     pub(crate) fn coordinate(&self, number: u32) -> f64 {
-        3.0 * (f64::from(number) - self.half)
+        PIXEL * (f64::from(number) - self.half)
     }
 
     /// The first column at or after each position, given in columns: a whole number.
@@ -63,7 +65,7 @@ impl Grid {
     /// The columns or rows whose X or Y may lie between two bounds.
     pub(crate) fn between(&self, low: f64, high: f64) -> Columns {
         // One more on either side is far more than rounding takes.
-        let number = |coordinate: f64| self.half + coordinate / 3.0;
+        let number = |coordinate: f64| self.half + coordinate / PIXEL;
         (self.ceil(number(low) - 1.0), self.count(number(high) + 1.0))
     }
 
@@ -77,7 +79,16 @@ impl Grid {
 }
 
 /// The coordinates of neighbouring rows or columns, relative to the first.
-const OFFSETS: [f64; ROWS] = [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0, 21.0];
+const OFFSETS: [f64; ROWS] = [
+    0.0,
+    PIXEL,
+    2.0 * PIXEL,
+    3.0 * PIXEL,
+    4.0 * PIXEL,
+    5.0 * PIXEL,
+    6.0 * PIXEL,
+    7.0 * PIXEL,
+];
 
 /// As many offsets as there are lanes, from that of number `first` on.
 #[inline(always)]
@@ -88,7 +99,7 @@ pub(crate) fn offsets<S: Simd>(simd: S, first: usize) -> S::f64s {
 /// X in columns.
 #[inline(always)]
 pub(crate) fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
-    x * (1.0 / 3.0) + grid.half
+    x * (1.0 / PIXEL) + grid.half
 }
 
 /// Stores whole numbers of columns, below 2³².

@@ -4,6 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::{Bounded, Real};
+use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL};
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
@@ -184,8 +185,8 @@ impl Ellipse {
     /// The outline of a sphere on the screen: there the chord's middle is the sphere's, and m = (10
     /// (Y − c_y) − 3 (Z − c_z))/√109.
     pub(crate) fn outline(center: Vector<Bounded>, radius: Bounded, grid: Grid) -> Ellipse {
-        let root = Bounded::exact(109.0).sqrt();
-        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let root = Bounded::exact(EYE_SQUARED).sqrt();
+        let [three, ten] = [EYE_Y, EYE_Z].map(Bounded::exact);
         let z = Bounded::exact(grid.max) - center.z;
         Ellipse::new(
             (center.x, Bounded::exact(0.0)),
@@ -245,7 +246,7 @@ impl Ellipse {
     pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let ColumnEnclosure { possible, certain } =
             dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
-        let column = grid.half + x / 3.0;
+        let column = grid.half + x / PIXEL;
         if column < possible[0] || column > possible[1] {
             return Some(false);
         }

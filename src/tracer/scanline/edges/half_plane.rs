@@ -4,6 +4,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::number::{Bounded, Real};
+use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
@@ -72,7 +73,7 @@ impl HalfPlane {
         // part of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_row` by 2u
         // more, the product with Y and the sum with it by u each: less than 8u of the terms'
         // magnitudes, and of N/2 and the root, which is below 3N where it matters.
-        let inverse = 1.0 / (3.0 * column.value());
+        let inverse = 1.0 / (PIXEL * column.value());
         let root = Root {
             at: grid.half - constant.value() * inverse,
             per_row: -(row.value() * inverse),
@@ -130,7 +131,7 @@ impl HalfPlane {
             Border::Right(root) => (root, false),
             Border::Level { .. } => return self.decide(x, y),
         };
-        let beyond = grid.half + x / 3.0 - (y * root.per_row + root.at);
+        let beyond = grid.half + x / PIXEL - (y * root.per_row + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
             Some((beyond > 0.0) == rightward)
         } else {

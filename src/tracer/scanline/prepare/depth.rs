@@ -2,7 +2,7 @@
 
 use crate::number::{Bounded, Real};
 use crate::scene::Support;
-use crate::tracer::frame::looking;
+use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z, looking};
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
@@ -98,7 +98,7 @@ impl Depth<'_> {
                 let max_s = (squared(0) + squared_error).max(0.0).sqrt() * INFLATION;
                 // 1/√109, from below and from above.
                 const ROOT: f64 = 0.095_782_628_522_115_14;
-                let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / 109.0);
+                let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / EYE_SQUARED);
                 bounds(
                     low - max_s * ROOT * INFLATION - error,
                     high - min_s * ROOT / INFLATION / INFLATION + error,
@@ -134,10 +134,10 @@ impl Depth<'_> {
         support: Support,
         grid: Grid,
     ) -> Depth<'static> {
-        let [three, ten] = [3.0, 10.0].map(Bounded::exact);
+        let [three, ten] = [EYE_Y, EYE_Z].map(Bounded::exact);
         // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
         let constant = ten * (Bounded::exact(grid.max) - center.z) - three * center.y;
-        let magnitude = constant.value().abs() + 3.0 * grid.max;
+        let magnitude = constant.value().abs() + EYE_Y * grid.max;
         let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.max);
         let radius = outline.squared_radius.max(0.0).sqrt() * INFLATION;
         let max_q = radius + q;
@@ -145,7 +145,7 @@ impl Depth<'_> {
             m: outline.m,
             squared_radius: outline.squared_radius,
             center_x: center.x.value(),
-            g: [constant.value(), 3.0],
+            g: [constant.value(), EYE_Y],
             error: (constant.error() + 8.0 * U * (magnitude + radius)) * INFLATION,
             squared_error: (outline.chord_error + (2.0 * max_q + q) * q + 8.0 * U * max_q * max_q)
                 * INFLATION,

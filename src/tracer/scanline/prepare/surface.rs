@@ -7,6 +7,7 @@ use bumpalo::collections::Vec as Growing;
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, SurfaceCasters};
 use crate::tracer::decision::Decision;
+use crate::tracer::frame::{EYE_Y, EYE_Z};
 use crate::tracer::pixel::{Picture, SeenSurface};
 use crate::tracer::scanline::edges::ellipse::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
@@ -46,7 +47,7 @@ impl<'f> PreparedSurface<'f> {
     ) -> Self {
         let grid = parts.grid;
         let zero = Bounded::exact(0.0);
-        let [one, three, ten] = [1.0, 3.0, 10.0].map(Bounded::exact);
+        let [one, three, ten] = [1.0, EYE_Y, EYE_Z].map(Bounded::exact);
         let third = one / three;
         // An eye ray reaches the surface at t = Y/3 − (N/2) · height, and z = Z − 10 t there.
         let height = surface.height_in_pixels;

@@ -16,6 +16,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
+use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets, store_columns};
 use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
@@ -225,7 +226,7 @@ impl<S: Simd> InRows<'_, S> {
     /// q in a column of each row.
     #[inline(always)]
     fn q(&self, column: S::f64s) -> S::f64s {
-        (column - self.grid.half) * 3.0 - self.sphere.center_x
+        (column - self.grid.half) * PIXEL - self.sphere.center_x
     }
 
     /// The columns in which s² is at least `min_square`. Columns at the ends may be missing.

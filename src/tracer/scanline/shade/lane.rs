@@ -3,6 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdFloatElement};
 
+use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::offsets;
 use crate::tracer::scanline::shade::sphere::Cycle;
 
@@ -34,7 +35,7 @@ impl Lane for f32 {
 
     #[inline(always)]
     fn differences<S: Simd>(simd: S, x: f64, center: f64) -> S::f32s {
-        let next = x + 3.0 * S::f64s::LEN as f64;
+        let next = x + PIXEL * S::f64s::LEN as f64;
         let low = f64::differences(simd, x, center);
         low.narrow(f64::differences(simd, next, center))
     }

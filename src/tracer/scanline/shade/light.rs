@@ -2,6 +2,7 @@
 //! spheres.
 
 use crate::number::{Bounded, Real};
+use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z};
 use crate::tracer::scanline::rounding::INFLATION;
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
@@ -19,8 +20,8 @@ pub(crate) struct Axes {
 
 impl Axes {
     fn new() -> Axes {
-        let root = Bounded::exact(109.0).sqrt();
-        let [three, ten] = [3.0, 10.0].map(|part| Bounded::exact(part) / root);
+        let root = Bounded::exact(EYE_SQUARED).sqrt();
+        let [three, ten] = [EYE_Y, EYE_Z].map(|part| Bounded::exact(part) / root);
         Axes { three, ten }
     }
 

@@ -6,6 +6,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::decision::Decision;
+use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
@@ -49,7 +50,7 @@ impl Run<'_> {
     #[inline(always)]
     fn x(&self, first: usize, on: usize) -> [f64; 2] {
         let x = self.grid.coordinate(self.from + first as u32);
-        [x, x + 3.0 * on as f64]
+        [x, x + PIXEL * on as f64]
     }
 
     /// A bit for each of `count` pixels: whether it may have a highlight.
