@@ -7,7 +7,7 @@ mod bounded;
 mod double_double;
 mod error_free;
 mod expression;
-mod rounding;
+pub(crate) mod rounding;
 mod sine;
 
 use std::cmp::Ordering;

@@ -9,10 +9,12 @@ mod builder;
 mod casters;
 mod error;
 mod exact;
+mod faces;
 mod file;
 mod hidden;
 mod rational;
 mod rules;
+mod solid;
 
 use std::io::Read;
 use std::path::Path;
@@ -24,7 +26,9 @@ pub use builder::SceneBuilder;
 pub(crate) use casters::SurfaceCasters;
 pub use error::{SceneError, SceneFileError};
 pub(crate) use exact::{Facts, Side, Support};
+pub(crate) use faces::{EDGES, FACES};
 pub use rules::MAX_SOLIDS;
+pub(crate) use solid::Solid;
 
 /// The built-in scene, as the TOML text that it is read from.
 pub const BUILTIN_TOML: &str = include_str!("scene/builtin.toml");
@@ -217,6 +221,16 @@ impl Scene {
     /// The tetrahedra, in the file's order.
     pub fn tetrahedra(&self) -> &[Tetrahedron] {
         &self.tetrahedra
+    }
+
+    /// The number of solids.
+    pub(crate) fn solid_count(&self) -> usize {
+        self.spheres.len() + self.tetrahedra.len()
+    }
+
+    /// The solid of this number.
+    pub(crate) fn solid(&self, number: usize) -> Solid<&Sphere, &Tetrahedron> {
+        Solid::numbered(number, &self.spheres, &self.tetrahedra)
     }
 
     /// The same scene in light that travels the opposite way.

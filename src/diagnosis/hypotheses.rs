@@ -45,7 +45,7 @@ struct Sampled {
 
 impl Sample {
     pub(super) fn new(given: &Image, truth: &Image, tolerance: f32, scene: &Scene) -> Sample {
-        let solids = scene.spheres().len() + scene.tetrahedra().len();
+        let solids = scene.solid_count();
         let (size, all) = (u64::from(given.size()), given.samples().len() / 3);
         let count = SAMPLE.min(TESTS / solids.max(1)).min(all);
         // A prime larger than any size is coprime with the number of pixels: no pixel comes twice.

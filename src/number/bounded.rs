@@ -28,7 +28,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::double_double::DoubleDouble;
 use super::error_free::two_sum;
-use super::rounding::{ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
+use super::rounding::{ROUND_UP, U, UNDERFLOW};
 use super::{Doubt, Real, round_enclosure, sin_cos};
 
 /// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity
@@ -51,7 +51,7 @@ impl Bounded {
     pub(crate) fn at_least(self) -> f64 {
         // A little more than the error takes care of the rounding here; NaN and infinities say
         // nothing.
-        let low = self.value - (self.error + 2.0 * UNIT_ROUNDOFF * self.value.abs()) * ROUND_UP;
+        let low = self.value - (self.error + 2.0 * U * self.value.abs()) * ROUND_UP;
         if low.is_nan() { f64::NEG_INFINITY } else { low }
     }
 
@@ -128,11 +128,7 @@ impl Mul for Bounded {
         }
         let value = self.value * other.value;
         let exact = is_exact_product(self.value, other.value);
-        let rounding = if exact {
-            0.0
-        } else {
-            UNIT_ROUNDOFF * value.abs()
-        };
+        let rounding = if exact { 0.0 } else { U * value.abs() };
         let known = exact && self.error == 0.0 && other.error == 0.0;
         let lost = if known { 0.0 } else { UNDERFLOW };
         let carried = self.value.abs() * other.error
@@ -162,7 +158,7 @@ impl Div for Bounded {
         let carried = (self.error + value.abs() * other.error) / (divisor - other.error);
         Bounded {
             value,
-            error: (carried + UNIT_ROUNDOFF * value.abs()) * ROUND_UP + UNDERFLOW,
+            error: (carried + U * value.abs()) * ROUND_UP + UNDERFLOW,
         }
     }
 }
@@ -202,7 +198,7 @@ impl Real for Bounded {
         // Both are correctly rounded; where u|v| underflows, the smallest f64 is more than enough.
         let rounded = |value: f64| Bounded {
             value,
-            error: value.abs() * UNIT_ROUNDOFF + f64::from_bits(1),
+            error: value.abs() * U + f64::from_bits(1),
         };
         (rounded(sin), rounded(cos))
     }
@@ -224,7 +220,7 @@ impl Real for Bounded {
         let value = self.value.sqrt();
         Bounded {
             value,
-            error: (self.error / value + UNIT_ROUNDOFF * value) * ROUND_UP,
+            error: (self.error / value + U * value) * ROUND_UP,
         }
     }
 

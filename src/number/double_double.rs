@@ -22,13 +22,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Real;
 use super::error_free::{quick_two_sum, two_product, two_sum};
-use super::rounding::{ROUND_UP, UNDERFLOW, UNIT_ROUNDOFF};
+use super::rounding::{ROUND_UP, U, UNDERFLOW};
 
 /// Above 3u² + 13u³.
-const SUM: f64 = 4.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
+const SUM: f64 = 4.0 * U * U;
 
 /// Above 7u².
-const PRODUCT: f64 = 8.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
+const PRODUCT: f64 = 8.0 * U * U;
 
 /// Products and their error terms that are at least this large have lost nothing to underflow.
 const NO_UNDERFLOW: f64 = 1e-270;
@@ -70,7 +70,7 @@ impl DoubleDouble {
 
     /// Encloses all from `high` + `low` to `high` + `up_to`, each end widened by an ulp.
     pub(super) fn around(high: f64, low: f64, up_to: f64) -> DoubleDouble {
-        let ulps = 4.0 * UNIT_ROUNDOFF * (low.abs() + up_to.abs());
+        let ulps = 4.0 * U * (low.abs() + up_to.abs());
         DoubleDouble {
             high,
             low,

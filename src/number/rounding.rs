@@ -1,11 +1,16 @@
-//! What f64 arithmetic can be off by, and how bounds on that are computed in f64 themselves: see
-//! `bounded.rs`.
+//! What f64 arithmetic can be off by, and how bounds on that are computed in f64 themselves.
+//!
+//! A bound is a sum of terms that are not negative. Computing a bound rounds, too: so bounds are
+//! multiplied by [`ROUND_UP`] or [`INFLATION`].
 
 /// u, the largest relative error of one rounding to f64.
-pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+pub(crate) const U: f64 = f64::EPSILON / 2.0;
 
-/// 1 + 2⁻⁴⁸ = 1 + 32u.
-pub(super) const ROUND_UP: f64 = 1.0 + 64.0 * f64::EPSILON / 4.0;
+/// 1 + 2⁻⁴⁸ = 1 + 32u, for bounds of a few operations: see `bounded.rs`.
+pub(super) const ROUND_UP: f64 = 1.0 + 16.0 * f64::EPSILON;
+
+/// 1 + 2⁻³⁹, for all other bounds: computing one of them has a relative error below 2⁻⁴⁰.
+pub(crate) const INFLATION: f64 = 1.0 + 8192.0 * f64::EPSILON;
 
 /// More than any chain of operations here loses to underflow, and less than any number that
 /// matters.

@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::bounding_ball::{BoundingBall, MARGIN, bounding_balls, each_overlapping_pair};
-use super::{Sphere, Surface, Tetrahedron};
+use super::{EDGES, FACES, Solid, Sphere, Surface, Tetrahedron};
 
 /// The casters of each sphere and each face: the solids that may stand between a point of it and
 /// the light.
@@ -36,12 +36,12 @@ impl Casters {
             .zip(facing_light)
             .map(|(tetrahedron, facing)| Prisms::new(tetrahedron, facing, l))
             .collect();
-        let balls = |solid: usize| match solid.checked_sub(spheres.len()) {
-            None => Balls {
-                centers: std::slice::from_ref(&spheres[solid].center),
-                radius: spheres[solid].radius,
+        let balls = |solid| match Solid::numbered(solid, spheres, tetrahedra) {
+            Solid::Sphere(sphere) => Balls {
+                centers: std::slice::from_ref(&sphere.center),
+                radius: sphere.radius,
             },
-            Some(tetrahedron) => Balls::points(&tetrahedra[tetrahedron].vertices),
+            Solid::Tetrahedron(tetrahedron) => Balls::points(&tetrahedron.vertices),
         };
         let mut casters = Casters {
             on_spheres: vec![Vec::new(); spheres.len()],
@@ -65,15 +65,14 @@ impl Casters {
                 if !may {
                     continue;
                 }
-                let shadow = caster
-                    .checked_sub(spheres.len())
-                    .map(|caster| &prisms[caster].shadow);
-                let misses =
-                    |receiver: Balls<'_>| shadow.is_some_and(|shadow| shadow.misses(receiver));
-                match receiver.checked_sub(spheres.len()) {
-                    None if misses(balls(receiver)) => {}
-                    None => casters.on_spheres[receiver].push(caster as u16),
-                    Some(tetrahedron) => {
+                let misses = |receiver: Balls<'_>| match Solid::index(caster, spheres.len()) {
+                    Solid::Sphere(_) => false,
+                    Solid::Tetrahedron(caster) => prisms[caster].shadow.misses(receiver),
+                };
+                match Solid::index(receiver, spheres.len()) {
+                    Solid::Sphere(_) if misses(balls(receiver)) => {}
+                    Solid::Sphere(sphere) => casters.on_spheres[sphere].push(caster as u16),
+                    Solid::Tetrahedron(tetrahedron) => {
                         let lists = casters.on_faces[tetrahedron].iter_mut();
                         for (k, (list, light)) in lists.zip(&prisms[tetrahedron].light).enumerate()
                         {
@@ -96,10 +95,13 @@ impl Casters {
 
     /// The casters of a sphere, or of a face of a tetrahedron.
     pub(crate) fn on(&self, solid: usize, face: Option<usize>) -> &[u16] {
-        match (self.on_spheres.get(solid), face) {
-            (Some(casters), _) => casters,
-            (None, Some(face)) => &self.on_faces[solid - self.on_spheres.len()][face],
-            (None, None) => &[],
+        match (
+            Solid::numbered(solid, &self.on_spheres, &self.on_faces),
+            face,
+        ) {
+            (Solid::Sphere(casters), _) => casters,
+            (Solid::Tetrahedron(casters), Some(face)) => &casters[face],
+            (Solid::Tetrahedron(_), None) => &[],
         }
     }
 }
@@ -122,7 +124,7 @@ impl<'s> Balls<'s> {
 
 /// The vertices of face `k` of a tetrahedron: all but vertex `k`.
 fn face(tetrahedron: &Tetrahedron, k: usize) -> [DVec3; 3] {
-    [1, 2, 3].map(|on| tetrahedron.vertices[(k + on) % 4])
+    FACES[k].map(|vertex| tetrahedron.vertices[vertex])
 }
 
 /// The prisms of a tetrahedron along the light.
@@ -162,15 +164,7 @@ impl Prisms {
             .into_iter()
             .filter(|k: &usize| facing[*k].is_gt());
         // An edge belongs to the silhouette if both other vertices are on one side.
-        let silhouette = [
-            [0, 1, 2, 3],
-            [0, 2, 1, 3],
-            [0, 3, 1, 2],
-            [1, 2, 0, 3],
-            [1, 3, 0, 2],
-            [2, 3, 0, 1],
-        ]
-        .map(|[a, b, c, d]| {
+        let silhouette = EDGES.map(|(c, d, [a, b])| {
             along_light(v[a], v[b], v[c])
                 .filter(|plane| plane.height(v[d]).is_some_and(|height| height < 0.0))
         });
@@ -432,9 +426,9 @@ mod tests {
             let casters = Casters::new(&spheres, &tetrahedra, l, &vec![false; solids], &facing);
             let mut check = |receiver: usize, face: Option<usize>, point: DVec3| {
                 for caster in (0..solids).filter(|caster| *caster != receiver) {
-                    let is_met = match spheres.get(caster) {
-                        Some(sphere) => meets_ball(point, l, sphere.center, sphere.radius),
-                        None => meets_tetrahedron(point, l, &tetrahedra[caster - spheres.len()]),
+                    let is_met = match Solid::numbered(caster, &spheres, &tetrahedra) {
+                        Solid::Sphere(sphere) => meets_ball(point, l, sphere.center, sphere.radius),
+                        Solid::Tetrahedron(tetrahedron) => meets_tetrahedron(point, l, tetrahedron),
                     };
                     let is_listed = casters.on(receiver, face).contains(&(caster as u16));
                     assert!(

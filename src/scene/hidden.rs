@@ -11,23 +11,13 @@ use glam::DVec3;
 
 use super::bounding_ball::{MARGIN, bounding_balls, each_overlapping_pair};
 use super::rational::{Plane, dot, exact, minus, sign};
-use super::{Sphere, Tetrahedron};
-
-/// A solid of either kind.
-#[derive(Clone, Copy)]
-enum AnySolid<'s> {
-    Sphere(&'s Sphere),
-    Tetrahedron(&'s Tetrahedron),
-}
+use super::{FACES, Solid, Sphere, Tetrahedron};
 
 /// For each solid, spheres first, whether it lies inside of another, and is hidden also at points
 /// that both have in common.
 pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
     let balls = bounding_balls(spheres, tetrahedra);
-    let solid = |number: usize| match spheres.get(number) {
-        Some(sphere) => AnySolid::Sphere(sphere),
-        None => AnySolid::Tetrahedron(&tetrahedra[number - spheres.len()]),
-    };
+    let solid = |number| Solid::numbered(number, spheres, tetrahedra);
     let mut hidden = vec![false; balls.len()];
     each_overlapping_pair(&balls, DVec3::X, |a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
@@ -36,10 +26,8 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
             let distance = small.center.distance(large.center);
             // A tetrahedron may lie inside although its ball does not.
             let may = match (solid(inner), solid(outer)) {
-                (AnySolid::Sphere(_), _) => {
-                    distance + small.radius <= large.radius * MARGIN + slack
-                }
-                (AnySolid::Tetrahedron(_), _) => distance <= large.radius * MARGIN + slack,
+                (Solid::Sphere(_), _) => distance + small.radius <= large.radius * MARGIN + slack,
+                (Solid::Tetrahedron(_), _) => distance <= large.radius * MARGIN + slack,
             };
             if may && !hidden[inner] && !hidden[outer] {
                 hidden[inner] = is_inside(solid(inner), solid(outer), outer < inner);
@@ -50,7 +38,11 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
 }
 
 /// Whether a solid lies inside of another: in its interior or, if `closed`, also on its border.
-fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
+fn is_inside(
+    inner: Solid<&Sphere, &Tetrahedron>,
+    outer: Solid<&Sphere, &Tetrahedron>,
+    closed: bool,
+) -> bool {
     let is_in = |distance: &Relaxed| match sign(distance) {
         Ordering::Greater => true,
         Ordering::Equal => closed,
@@ -58,32 +50,31 @@ fn is_inside(inner: AnySolid<'_>, outer: AnySolid<'_>, closed: bool) -> bool {
     };
     let number = |x: f64| Relaxed::try_from(x).unwrap_or(Relaxed::ZERO);
     match (inner, outer) {
-        (AnySolid::Sphere(inner), AnySolid::Sphere(outer)) => {
+        (Solid::Sphere(inner), Solid::Sphere(outer)) => {
             let between = minus(&exact(inner.center), &exact(outer.center));
             let gap = number(outer.radius) - number(inner.radius);
             !sign(&gap).is_lt() && is_in(&(&gap * &gap - dot(&between, &between)))
         }
-        (AnySolid::Tetrahedron(inner), AnySolid::Sphere(outer)) => {
+        (Solid::Tetrahedron(inner), Solid::Sphere(outer)) => {
             let (center, radius) = (exact(outer.center), number(outer.radius));
             inner.vertices.iter().all(|vertex| {
                 let from = minus(&exact(*vertex), &center);
                 is_in(&(&radius * &radius - dot(&from, &from)))
             })
         }
-        (inner, AnySolid::Tetrahedron(outer)) => {
+        (inner, Solid::Tetrahedron(outer)) => {
             let points: Vec<DVec3> = match inner {
-                AnySolid::Sphere(sphere) => vec![sphere.center],
-                AnySolid::Tetrahedron(tetrahedron) => tetrahedron.vertices.to_vec(),
+                Solid::Sphere(sphere) => vec![sphere.center],
+                Solid::Tetrahedron(tetrahedron) => tetrahedron.vertices.to_vec(),
             };
             let radius = match inner {
-                AnySolid::Sphere(sphere) => number(sphere.radius),
-                AnySolid::Tetrahedron(_) => Relaxed::ZERO,
+                Solid::Sphere(sphere) => number(sphere.radius),
+                Solid::Tetrahedron(_) => Relaxed::ZERO,
             };
             // Most points are far outside, as f64 tells.
             let beyond = |point: &DVec3| {
                 (0..4).any(|k: usize| {
-                    let [a, b, c] =
-                        [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| outer.vertices[i]);
+                    let [a, b, c] = FACES[k].map(|vertex| outer.vertices[vertex]);
                     let normal = (b - a).cross(c - a);
                     let side = |p: DVec3| normal.dot(p - a);
                     let scale = normal.length() * (point.abs() + a.abs()).element_sum();

@@ -6,6 +6,8 @@ use dashu_base::Sign;
 use dashu_ratio::{RBig, Relaxed};
 use glam::DVec3;
 
+use super::FACES;
+
 pub(super) type RationalVector = [Relaxed; 3];
 
 /// The vector of these f64s, taken exactly; one that is not finite counts as 0.
@@ -47,7 +49,7 @@ pub(super) struct Plane {
 impl Plane {
     /// The plane of face `k`, its normal outward.
     pub(super) fn of_face(vertices: &[RationalVector; 4], k: usize) -> Plane {
-        let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &vertices[i]);
+        let [a, b, c] = FACES[k].map(|vertex| &vertices[vertex]);
         let normal = cross(&minus(b, a), &minus(c, a));
         let outward = sign(&dot(&normal, &minus(&vertices[k], a))).is_lt();
         let normal = if outward { normal } else { normal.map(|x| -x) };

@@ -4,8 +4,9 @@ use super::arena::Arena;
 use super::decision::{Decision, Seen};
 use super::ladder::{Ladder, RowPixels, Rung};
 use super::pixel::SeenSurface;
+use super::view::SolidKinds;
 use crate::number::Bounded;
-use crate::scene::Scene;
+use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
 
 /// The most solids that are looked at in a pixel: where thousands lie one behind the other, looking
@@ -48,7 +49,7 @@ impl Colors<'_> {
     /// Every decision whose colour all its pixels share. Face 0 stands for all four faces where
     /// they have one colour.
     pub(crate) fn shared(&self) -> impl Iterator<Item = Decision> + '_ {
-        let solids = || 0..self.scene.spheres().len() + self.scene.tetrahedra().len();
+        let solids = || 0..self.scene.solid_count();
         let mirrored = self.mirrors().then(solids).into_iter().flatten();
         self.apart_from_solids()
             .chain(
@@ -112,36 +113,32 @@ impl Colors<'_> {
 
     /// The ways in which this stage shows a solid.
     fn ways_to_see(&self, solid: usize) -> impl Iterator<Item = Seen> + use<'_> {
-        let tetrahedron = solid.checked_sub(self.scene.spheres().len());
+        let index = Solid::index(solid, self.scene.spheres().len());
         let has_shadows = self.stage >= Stage::Shadow;
-        let is_seen = match self.stage {
-            Stage::Image => false,
-            Stage::Spheres => tetrahedron.is_none(),
-            Stage::Tetrahedron => tetrahedron.is_some(),
-            _ => true,
+        let is_seen = self.stage != Stage::Image && SolidKinds::of(self.stage).hold(&index);
+        let facts = self.scene.facts();
+        let (sphere, dark_face, facing_light) = match index {
+            Solid::Sphere(_) => (Some(None), None, None),
+            Solid::Tetrahedron(index) => (None, Some(0), Some(facts.facing_light[index])),
         };
-        let faces = match tetrahedron {
-            // In flat colour one face looks like the others.
-            Some(_) if self.stage == Stage::Tetrahedron => 0..1,
-            Some(_) => 0..4,
-            None => 0..0,
+        // In flat colour one face looks like the others.
+        let faces = if self.stage == Stage::Tetrahedron {
+            1
+        } else {
+            4
         };
-        let facing_light = &self.scene.facts().facing_light;
-        let lit_faces = faces.filter(move |face| {
-            let turned_away =
-                tetrahedron.is_some_and(|index| facing_light[index][usize::from(*face)].is_le());
-            !(has_shadows && turned_away)
-        });
+        let facing_light = (0..).zip(facing_light.into_iter().flatten()).take(faces);
+        let lit_faces = facing_light.filter(move |(_, facing)| !has_shadows || facing.is_gt());
+        let lit_faces = lit_faces.map(|(face, _)| Some(face));
         // A scene has at most 4096 solids.
         let seen = move |face, in_shadow| Seen {
             solid: solid as u16,
             face,
             in_shadow,
         };
-        let ball = (tetrahedron.is_none()).then(|| seen(None, false));
-        let in_shadow = has_shadows.then(|| seen(tetrahedron.map(|_| 0), true));
-        ball.into_iter()
-            .chain(lit_faces.map(move |face| seen(Some(face), false)))
+        let in_shadow = has_shadows.then(|| seen(dark_face, true));
+        let lit = sphere.into_iter().chain(lit_faces);
+        lit.map(move |face| seen(face, false))
             .chain(in_shadow)
             .filter(move |_| is_seen)
     }

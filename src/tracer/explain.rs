@@ -12,7 +12,7 @@ use super::vector::Vector;
 use super::view::{SolidKinds, View};
 use crate::image::display_byte;
 use crate::number::Real;
-use crate::scene::Scene;
+use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
 
 /// A number with nine significant digits.
@@ -82,7 +82,7 @@ impl<R: Real> Picture<'_, R> {
     }
 
     fn explain_ray(&self, text: &mut String, column: u32, row: u32) -> Result<(), R::Doubt> {
-        let ray = self.eye_ray(column, row);
+        let ray = self.frame.eye_ray(column, row);
         let half = f64::from(self.size) / 2.0;
         let [u, v] = [column, row].map(|number| Short((f64::from(number) - half) / half));
         say(text, "u, v", format!("{u}, {v}"));
@@ -90,11 +90,7 @@ impl<R: Real> Picture<'_, R> {
         say(text, "e", format!("{e}  the pixel's place on the screen"));
         let d = ShortTriple(self.unit(ray.direction.vector));
         say(text, "d", format!("{d}  the way the eye looks"));
-        let kinds = match self.stage {
-            Stage::Spheres => SolidKinds::Spheres,
-            Stage::Tetrahedron => SolidKinds::Tetrahedra,
-            _ => SolidKinds::All,
-        };
+        let kinds = SolidKinds::of(self.stage);
         let first = self.view.first_hit((column, row), &ray, None, kinds)?;
         for (solid, hit) in self.view.hits((column, row), &ray, false, kinds)? {
             let rank = if first.as_ref().is_some_and(|(nearest, _)| *nearest == solid) {
@@ -106,7 +102,7 @@ impl<R: Real> Picture<'_, R> {
             say(text, "meets", format!("{name} at t = {t}{rank}"));
         }
         if let Some(surface) = &self.surface {
-            let (depth, point) = self.surface_point(surface, &ray, row);
+            let (depth, point) = self.frame.on_surface(&surface.square, &ray, row);
             let inside = if surface.square.contains(point)? {
                 "in the square"
             } else {
@@ -130,7 +126,7 @@ impl<R: Real> Picture<'_, R> {
         row: u32,
         decision: Decision,
     ) -> Result<(), R::Doubt> {
-        let ray = self.eye_ray(column, row);
+        let ray = self.frame.eye_ray(column, row);
         match (decision, &self.surface) {
             (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
             (Decision::Solid(seen), _) => {
@@ -138,7 +134,7 @@ impl<R: Real> Picture<'_, R> {
                 self.explain_solid(text, &self.view, ((column, row), &ray), false, seen)?;
             }
             (_, Some(surface)) => {
-                let (_, point) = self.surface_point(surface, &ray, row);
+                let (_, point) = self.frame.on_surface(&surface.square, &ray, row);
                 say(text, "shows", "the surface, which no solid hides");
                 let casters = self
                     .view
@@ -213,7 +209,7 @@ impl<R: Real> Picture<'_, R> {
         let y = if mirrored { 2.0 * height - y } else { y };
         say(text, "point", ShortTriple([x, y, z]));
         say(text, "n", unit(hit.normal.vector));
-        if matches!(self.stage, Stage::Spheres | Stage::Tetrahedron) {
+        if self.stage < Stage::Shading {
             return Ok(());
         }
         let shading = &view.shading;
@@ -322,11 +318,12 @@ impl<R: Real> Picture<'_, R> {
 
 /// A solid as a person would call it, counted from 1 as in the document.
 pub(crate) fn name(scene: &Scene, solid: usize, face: Option<u8>) -> String {
-    let spheres = scene.spheres().len();
-    match face {
-        _ if solid < spheres => format!("sphere {}", solid + 1),
-        Some(face) => format!("tetrahedron {}, face {face}", solid - spheres + 1),
-        None => format!("tetrahedron {}", solid - spheres + 1),
+    match (Solid::index(solid, scene.spheres().len()), face) {
+        (Solid::Sphere(index), _) => format!("sphere {}", index + 1),
+        (Solid::Tetrahedron(index), Some(face)) => {
+            format!("tetrahedron {}, face {face}", index + 1)
+        }
+        (Solid::Tetrahedron(index), None) => format!("tetrahedron {}", index + 1),
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use bumpalo::Bump;
 
 use super::arena::collect;
-use super::frame::{EYE_SQUARED, EYE_Y, EYE_Z, Frame, PIXEL, reflect};
+use super::frame::{EYE_SQUARED, EYE_Y, EYE_Z, Frame, PIXEL, from_middle, reflect};
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use crate::number::Bounded;
@@ -124,7 +124,7 @@ impl<'f> ExtentsOfSolids<'f> {
 
     /// Y of a row.
     pub(super) fn y_of(&self, row: u32) -> f64 {
-        PIXEL * (f64::from(row) - self.half)
+        PIXEL * from_middle(row, self.half)
     }
 
     /// The extent of a solid.
@@ -299,7 +299,7 @@ impl<'f> Extents<'f> {
             direct: solids(None),
             mirrored,
             surface,
-            casters_on_surface: CastersOnSurface::new(scene, bounded, size),
+            casters_on_surface: CastersOnSurface::new(scene, bounded),
         }
     }
 }

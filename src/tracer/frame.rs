@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use super::line::Direction;
+use super::line::{Direction, Line};
 use super::shading::halfway;
 use super::surface::Surface;
 use super::tetrahedron::Tetrahedron;
@@ -38,16 +38,48 @@ pub(super) struct Frame<R> {
     pub(super) cos: R,
     /// 3N/2.
     pub(super) scale: R,
+    /// N/2.
+    half: f64,
 }
 
 impl<R: Real> Frame<R> {
     /// `sin` and `cos` are those of α, `size` is N.
     pub(super) fn new(sin: R, cos: R, size: u32) -> Self {
+        let half = f64::from(size) / 2.0;
         Frame {
             sin,
             cos,
-            scale: R::exact(1.5 * f64::from(size)),
+            scale: R::exact(PIXEL * half),
+            half,
         }
+    }
+
+    /// The whole line of sight through the pixel at `column` from the left and `row` from the
+    /// bottom.
+    pub(super) fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
+        let [x, y] = [column, row].map(|number| PIXEL * from_middle(number, self.half));
+        let origin = [x, y, PIXEL * self.half].map(R::exact);
+        Line {
+            origin: Vector::new(origin[0], origin[1], origin[2]),
+            direction: looking(),
+            leaves: None,
+        }
+    }
+
+    /// The parameter and the point at which the eye ray of a pixel in `row` meets the surface's
+    /// plane. The point's height is not rounded.
+    pub(super) fn on_surface(
+        &self,
+        surface: &Surface<R>,
+        ray: &Line<R>,
+        row: u32,
+    ) -> (R, Vector<R>) {
+        let depth = R::exact(from_middle(row, self.half)) - surface.height_in_pixels;
+        let point = Vector {
+            y: surface.height,
+            ..ray.at(depth)
+        };
+        (depth, point)
     }
 
     /// The height of the surface's plane in view space, if there is one.
@@ -77,6 +109,7 @@ impl<R: Real> Frame<R> {
         let surface = scene.surface()?;
         Some(Surface {
             height: self.mirror(scene)?,
+            height_in_pixels: R::exact(surface.height) * R::exact(self.half),
             half_width: R::exact(surface.half_width) * self.scale,
             sin: self.sin,
             cos: self.cos,
@@ -132,6 +165,12 @@ impl Frame<f64> {
         let y = if mirrored { EYE_Y } else { -EYE_Y };
         DVec3::new(-EYE_Z * self.sin, y, -EYE_Z * self.cos)
     }
+}
+
+/// How many pixels a column or row is from the picture's middle; `half` is N/2.
+#[inline]
+pub(super) fn from_middle(number: u32, half: f64) -> f64 {
+    f64::from(number) - half
 }
 
 /// The reflection in the horizontal plane of height `mirror`, if there is one.

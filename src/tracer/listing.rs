@@ -32,9 +32,9 @@ use glam::{DVec3, dvec3};
 use super::decision::{Decision, Seen};
 use super::ladder::{Pixels, Rung};
 use super::pixel::{Pixel, QUADRANTS, quadrant};
-use super::{TraceError, explain, tetrahedron};
+use super::{TraceError, explain};
 use crate::camera;
-use crate::scene::{Scene, Sphere, Surface};
+use crate::scene::{FACES, Scene, Sphere, Surface};
 use crate::stage::Stage;
 use color::get_pixel_color;
 use inter_point::{
@@ -95,7 +95,7 @@ impl<'a> Listing<'a> {
             look_at: get_unit(dvec3(sin_alpha, 0.3, cos_alpha)),
             lig_dir: get_unit(scene.light().direction),
             spheres: [sphere1, sphere2],
-            t: tetrahedron::FACES.map(|[a, b, c]| {
+            t: FACES.map(|[a, b, c]| {
                 // Counter-clockwise from outside, as Equation 3-3 needs it.
                 let right_handed = scene.facts().right_handed.first() == Some(&true);
                 let (b, c) = if right_handed { (b, c) } else { (c, b) };

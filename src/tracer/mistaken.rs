@@ -11,7 +11,7 @@ use super::line::{Direction, Hit, Line};
 use super::pixel::{Picture, Rules, SeenSurface};
 use super::vector::Vector;
 use super::view::View;
-use crate::scene::Scene;
+use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
 
 /// The mistake of a tracer; the default is none.
@@ -194,7 +194,7 @@ fn is_shaded(
     ray: &Line<f64>,
     but: Option<usize>,
 ) -> Result<bool, Infallible> {
-    for solid in 0..view.spheres.len() + view.tetrahedra.len() {
+    for solid in 0..view.solid_count() {
         if Some(solid) != but && view.is_ahead(solid, ray)? {
             return Ok(true);
         }
@@ -213,13 +213,12 @@ fn last_hit(
         ..line.direction
     };
     let back = Line { direction, ..*line };
-    let hit = match view.spheres.get(solid) {
-        Some(sphere) => sphere.first_hit(&back)?,
-        None => {
-            let tetrahedron = &view.tetrahedra[solid - view.spheres.len()].solid;
-            let face_signs = tetrahedron.face_signs(&direction)?;
-            let functions = tetrahedron.edge_functions(&direction, face_signs);
-            tetrahedron.first_hit(&functions, &back)?
+    let hit = match view.solid(solid) {
+        Solid::Sphere(sphere) => sphere.first_hit(&back)?,
+        Solid::Tetrahedron(t) => {
+            let face_signs = t.solid.face_signs(&direction)?;
+            let functions = t.solid.edge_functions(&direction, face_signs);
+            t.solid.first_hit(&functions, &back)?
         }
     };
     Ok(hit.map(|hit| Hit {

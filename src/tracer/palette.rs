@@ -23,7 +23,7 @@ const OF_A_SOLID: usize = 6;
 impl<'f> Palette<'f> {
     /// An empty one.
     pub(super) fn new(scene: &Scene, arena: &'f Bump) -> Self {
-        let solids = scene.spheres().len() + scene.tetrahedra().len();
+        let solids = scene.solid_count();
         let count = WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID;
         Palette {
             slots: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),

@@ -8,14 +8,14 @@ use glam::DVec3;
 use super::arena::Room;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
-use super::frame::{Frame, PIXEL, looking};
+use super::frame::{Frame, looking};
 use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use super::view::{FrameSigns, SolidKinds, View};
 use crate::number::{Real, all, any};
-use crate::scene::Scene;
+use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
 
 /// What all pixels of a frame share.
@@ -37,8 +37,6 @@ pub(super) struct SeenSurface<'f, R> {
     pub(super) extent: Extent,
     casters: CastersOnSurface<'f>,
     color: Vector<R>,
-    /// (N/2) · height.
-    pub(super) height_in_pixels: R,
     pub(super) mirror: Option<Mirror<'f, R>>,
 }
 
@@ -120,7 +118,6 @@ impl<'f, R: Real> Picture<'f, R> {
                     extent: extent.clone(),
                     casters,
                     color: Vector::exact(described.color),
-                    height_in_pixels: R::exact(described.height) * R::exact(f64::from(size) / 2.0),
                     mirror: signs.mirrored.as_ref().map(|signs| Mirror {
                         view: View::new(scene, frame, signs, extents.mirrored, true, room),
                         reflectance: R::exact(described.reflectance),
@@ -149,9 +146,9 @@ impl<'f, R: Real> Picture<'f, R> {
     pub(super) fn decide_by(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
         match self.stage {
             Stage::Image => Ok((Decision::Quadrant(quadrant(column, row, self.size)), None)),
-            Stage::Spheres => self.solid_alone(rules, column, row, SolidKinds::Spheres),
-            Stage::Tetrahedron => self.solid_alone(rules, column, row, SolidKinds::Tetrahedra),
-            Stage::Shading => self.solid_alone(rules, column, row, SolidKinds::All),
+            Stage::Spheres | Stage::Tetrahedron | Stage::Shading => {
+                self.solid_alone(rules, column, row)
+            }
             Stage::Shadow | Stage::Reflection | Stage::Animation => self.traced(rules, column, row),
         }
     }
@@ -171,7 +168,7 @@ impl<'f, R: Real> Picture<'f, R> {
             Decision::Mirrored(seen) => (self.view(true), seen),
             _ => return Ok(None),
         };
-        let ray = self.eye_ray(column, row);
+        let ray = self.frame.eye_ray(column, row);
         let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, SolidKinds::All)? else {
             return Ok(None);
         };
@@ -192,13 +189,9 @@ impl<'f, R: Real> Picture<'f, R> {
             (Decision::Solid(seen), _) => self.color_of_solid(&self.view, seen, normal)?,
             (Decision::Surface, Some(surface)) => surface.color,
             (Decision::SurfaceInShadow, _) => self.view.shading.ambient(),
-            (
-                Decision::Mirrored(seen),
-                Some(SeenSurface {
-                    mirror: Some(mirror),
-                    ..
-                }),
-            ) => self.color_of_solid(&mirror.view, seen, normal)? * mirror.reflectance,
+            (Decision::Mirrored(seen), _) => {
+                self.reflected(self.color_of_solid(self.view(true), seen, normal)?)
+            }
             // The background: nothing else is decided.
             _ => Vector::exact(self.scene.background()),
         };
@@ -219,9 +212,10 @@ impl<'f, R: Real> Picture<'f, R> {
         if self.stage < Stage::Shading {
             return Ok(color);
         }
-        let face = seen
-            .face
-            .map(|face| view.face_normal(seen.solid.into(), face.into()));
+        let face = match (view.solid(seen.solid.into()), seen.face) {
+            (Solid::Tetrahedron(t), Some(face)) => Some(t.solid.normal(face.into())),
+            _ => None,
+        };
         let light = match normal.or(face.as_ref()) {
             Some(normal) if !seen.in_shadow => view.shading.lit(normal)?,
             _ => view.shading.ambient(),
@@ -229,28 +223,11 @@ impl<'f, R: Real> Picture<'f, R> {
         Ok(color.times(light))
     }
 
-    /// The whole line of sight through a pixel.
-    pub(super) fn eye_ray(&self, column: u32, row: u32) -> Line<R> {
-        let half = f64::from(self.size) / 2.0;
-        let origin = [f64::from(column) - half, f64::from(row) - half, half]
-            .map(|coordinate| R::exact(PIXEL * coordinate));
-        Line {
-            origin: Vector::new(origin[0], origin[1], origin[2]),
-            direction: looking(),
-            leaves: None,
-        }
-    }
-
     /// Stages 2 to 4: the first hit, without shadows.
-    fn solid_alone(
-        &self,
-        rules: &impl Rules<R>,
-        column: u32,
-        row: u32,
-        solids: SolidKinds,
-    ) -> Decided<R> {
-        let ray = self.eye_ray(column, row);
-        let hit = self.view.first_hit((column, row), &ray, None, solids)?;
+    fn solid_alone(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
+        let ray = self.frame.eye_ray(column, row);
+        let kinds = SolidKinds::of(self.stage);
+        let hit = self.view.first_hit((column, row), &ray, None, kinds)?;
         Ok(match hit {
             Some((solid, hit)) => {
                 let hit = rules.hit(&self.view, solid, &ray, hit)?;
@@ -266,7 +243,7 @@ impl<'f, R: Real> Picture<'f, R> {
 
     /// Stages 5 to 7: the first hit among the solids and the surface.
     fn traced(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
-        let ray = self.eye_ray(column, row);
+        let ray = self.frame.eye_ray(column, row);
         let first = self
             .view
             .first_hit((column, row), &ray, None, SolidKinds::All)?;
@@ -279,7 +256,7 @@ impl<'f, R: Real> Picture<'f, R> {
             .as_ref()
             .filter(|surface| surface.extent.holds(column, row))
         {
-            let (depth, point) = self.surface_point(surface, &ray, row);
+            let (depth, point) = self.frame.on_surface(&surface.square, &ray, row);
             let hides = || match &hit {
                 // At equal depths, the solid is seen, and not the surface.
                 Some((_, hit)) if hit.support == surface.square.support => Ok(false),
@@ -299,25 +276,6 @@ impl<'f, R: Real> Picture<'f, R> {
             }
             None => (Decision::Background, None),
         })
-    }
-
-    /// The parameter and the point at which an eye ray meets the surface's plane. The point's
-    /// height is not rounded.
-    pub(super) fn surface_point(
-        &self,
-        surface: &SeenSurface<'_, R>,
-        ray: &Line<R>,
-        row: u32,
-    ) -> (R, Vector<R>) {
-        let depth =
-            R::exact(f64::from(row) - f64::from(self.size) / 2.0) - surface.height_in_pixels;
-        (
-            depth,
-            Vector {
-                y: surface.square.height,
-                ..ray.at(depth)
-            },
-        )
     }
 
     /// The decision where the surface is in front: in shadow, mirroring, or plain.
@@ -367,13 +325,13 @@ impl<'f, R: Real> Picture<'f, R> {
 
     /// The mirror's view, or the direct one.
     pub(super) fn view(&self, mirrored: bool) -> &View<'f, R> {
-        let mirror = self
-            .surface
-            .as_ref()
-            .and_then(|surface| surface.mirror.as_ref());
-        mirror
-            .filter(|_| mirrored)
-            .map_or(&self.view, |mirror| &mirror.view)
+        let mirror = self.mirror().filter(|_| mirrored);
+        mirror.map_or(&self.view, |mirror| &mirror.view)
+    }
+
+    fn mirror(&self) -> Option<&Mirror<'f, R>> {
+        let surface = self.surface.as_ref()?;
+        surface.mirror.as_ref()
     }
 
     /// Whether a point of a solid is in shadow.
@@ -394,12 +352,17 @@ impl<'f, R: Real> Picture<'f, R> {
             .chain(iter::once_with(by_surface)))
     }
 
+    /// What the surface reflects of a colour.
+    pub(super) fn reflected(&self, color: Vector<R>) -> Vector<R> {
+        self.mirror()
+            .map_or(color, |mirror| color * mirror.reflectance)
+    }
+
     /// The colour c of a solid.
     pub(super) fn solid_color(&self, solid: usize) -> Vector<R> {
-        let spheres = self.scene.spheres();
-        Vector::exact(match spheres.get(solid) {
-            Some(sphere) => sphere.color,
-            None => self.scene.tetrahedra()[solid - spheres.len()].color,
+        Vector::exact(match self.scene.solid(solid) {
+            Solid::Sphere(sphere) => sphere.color,
+            Solid::Tetrahedron(tetrahedron) => tetrahedron.color,
         })
     }
 }

@@ -72,7 +72,6 @@ mod bounds;
 mod edges;
 mod grid;
 mod prepare;
-mod rounding;
 mod shade;
 #[cfg(test)]
 mod tests;

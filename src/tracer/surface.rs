@@ -13,6 +13,8 @@ use crate::scene::Support;
 pub(super) struct Surface<R> {
     /// The y of the plane.
     pub(super) height: R,
+    /// The same in pixels: (N/2) · height.
+    pub(super) height_in_pixels: R,
     /// Half the length of a side.
     pub(super) half_width: R,
     /// sin α, the direction of the sides.

@@ -15,21 +15,7 @@ use glam::DVec3;
 use super::line::{Direction, Hit, Line, Normal};
 use super::vector::Vector;
 use crate::number::{Real, all};
-use crate::scene::Support;
-
-/// Face k is the one opposite vertex k; its vertices are listed counter-clockwise as seen from
-/// outside, for a tetrahedron whose edges 0→1, 0→2, 0→3 are right-handed.
-pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
-
-/// The edge that faces i < j share, from its first to its last vertex along n_i × n_j.
-const EDGES: [(usize, usize, [usize; 2]); 6] = [
-    (0, 1, [2, 3]),
-    (0, 2, [3, 1]),
-    (0, 3, [1, 2]),
-    (1, 2, [0, 3]),
-    (1, 3, [2, 0]),
-    (2, 3, [0, 1]),
-];
+use crate::scene::{EDGES, FACES, Support};
 
 /// A tetrahedron in view space.
 pub(super) struct Tetrahedron<R> {
@@ -83,6 +69,15 @@ impl<R> EdgeFunctions<R> {
     /// The faces that lines enter, in the order of their numbers.
     pub(super) fn entered(&self) -> impl Iterator<Item = usize> {
         faces(self, Ordering::Less)
+    }
+
+    /// All pairs of these faces, the lower number first, each with the index of its edge.
+    fn entered_pairs(&self) -> impl Iterator<Item = ((usize, usize), usize)> {
+        let is_entered = |face: usize| self.face_signs[face].is_lt();
+        let edges = EDGES.iter().enumerate();
+        edges.filter_map(move |(edge, &(i, j, _))| {
+            (is_entered(i) && is_entered(j)).then_some(((i, j), edge))
+        })
     }
 }
 
@@ -226,16 +221,14 @@ impl<R: Real> Tetrahedron<R> {
         all(self.met(functions).map(|half_space| half_space.holds(line)))
     }
 
-    /// All pairs of faces that lines enter, the lower number first, each with the half-space in
-    /// which lines enter the first one last.
+    /// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the half-space
+    /// in which lines enter the first one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,
-    ) -> impl Iterator<Item = (usize, usize, HalfSpace<R>)> + 'a {
-        EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
-            let both = functions.face_signs[i].is_lt() && functions.face_signs[j].is_lt();
-            both.then(|| (i, j, self.side(edge, functions)))
-        })
+    ) -> impl Iterator<Item = ((usize, usize), HalfSpace<R>)> + 'a {
+        let pairs = functions.entered_pairs();
+        pairs.map(|(pair, edge)| (pair, self.side(edge, functions)))
     }
 
     /// The face through which a line enters the solid: the last that it enters, and of several at
@@ -245,14 +238,10 @@ impl<R: Real> Tetrahedron<R> {
         functions: &EdgeFunctions<R>,
         line: &Line<R>,
     ) -> Result<usize, R::Doubt> {
-        let mut entering = faces(functions, Ordering::Less);
-        let mut last = entering.next().unwrap_or(0);
-        for face in entering {
-            if !self.side(edge_of(last, face), functions).holds(line)? {
-                last = face;
-            }
-        }
-        Ok(last)
+        let first = functions.entered().next().unwrap_or(0);
+        last_entered(first, functions.entered_pairs(), |edge| {
+            self.side(edge, functions).holds(line)
+        })
     }
 
     /// The first point of the whole line in the solid.
@@ -328,13 +317,21 @@ fn faces<R>(functions: &EdgeFunctions<R>, face_signs: Ordering) -> impl Iterator
         .filter_map(move |(face, sign)| (sign == face_signs).then_some(face))
 }
 
-/// The index in [`EDGES`] of the edge that faces i < j share.
-fn edge_of(i: usize, j: usize) -> usize {
-    match (i, j) {
-        (0, j) => j - 1,
-        (1, j) => j + 1,
-        _ => 5,
+/// The face that a line enters last, of several at once the lowest. `first` is the lowest that the
+/// line enters. `pairs` are all pairs of such faces, in increasing order, the lower face of each
+/// first; `is_first_last` tells whether the line enters the first face of a pair last.
+pub(super) fn last_entered<T, E>(
+    first: usize,
+    pairs: impl Iterator<Item = ((usize, usize), T)>,
+    is_first_last: impl Fn(T) -> Result<bool, E>,
+) -> Result<usize, E> {
+    let mut last = first;
+    for ((one, other), pair) in pairs {
+        if one == last && !is_first_last(pair)? {
+            last = other;
+        }
     }
+    Ok(last)
 }
 
 #[cfg(test)]

@@ -13,13 +13,14 @@ use bumpalo::Bump;
 use super::arena::Room;
 use super::extent::ExtentsOfSolids;
 use super::frame::{Frame, looking, reflect};
-use super::line::{Hit, Line, Normal};
+use super::line::{Hit, Line};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
 use super::tetrahedron::{EdgeFunctions, Tetrahedron, certain_face_signs};
 use super::vector::Vector;
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
-use crate::scene::{Scene, Support};
+use crate::scene::{Scene, Solid, Support};
+use crate::stage::Stage;
 
 impl<R: Real> Frame<R> {
     /// The signs that a view of this frame needs. `plain` is the same frame in f64.
@@ -145,12 +146,31 @@ pub(super) struct TetrahedronInView<R> {
     pub(super) to_light: EdgeFunctions<R>,
 }
 
-/// Which solids take part in a stage.
+/// Which kinds of solids take part in a stage.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum SolidKinds {
     Spheres,
     Tetrahedra,
     All,
+}
+
+impl SolidKinds {
+    /// Those of stages that show solids.
+    pub(super) fn of(stage: Stage) -> Self {
+        match stage {
+            Stage::Spheres => SolidKinds::Spheres,
+            Stage::Tetrahedron => SolidKinds::Tetrahedra,
+            _ => SolidKinds::All,
+        }
+    }
+
+    /// Whether a solid is among them.
+    pub(super) fn hold<S, T>(self, solid: &Solid<S, T>) -> bool {
+        match solid {
+            Solid::Sphere(_) => self != SolidKinds::Tetrahedra,
+            Solid::Tetrahedron(_) => self != SolidKinds::Spheres,
+        }
+    }
 }
 
 impl<'f, R: Real> View<'f, R> {
@@ -209,11 +229,15 @@ impl<'f, R: Real> View<'f, R> {
         }
     }
 
-    /// The normal of a face of a tetrahedron, given by its number among all solids.
-    pub(super) fn face_normal(&self, solid: usize, face: usize) -> Normal<R> {
-        self.tetrahedra[solid - self.spheres.len()]
-            .solid
-            .normal(face)
+    /// The number of solids.
+    pub(super) fn solid_count(&self) -> usize {
+        self.spheres.len() + self.tetrahedra.len()
+    }
+
+    /// The solid of this number.
+    #[inline]
+    pub(super) fn solid(&self, number: usize) -> Solid<&'f Sphere<R>, &'f TetrahedronInView<R>> {
+        Solid::numbered(number, self.spheres, self.tetrahedra)
     }
 
     /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from`
@@ -268,8 +292,10 @@ impl<'f, R: Real> View<'f, R> {
         ray: &Line<R>,
         doubt: R::Doubt,
     ) -> Result<Ordering, R::Doubt> {
-        match (self.spheres.get(one), self.spheres.get(other)) {
-            (Some(one), Some(other)) => one.compare_abreast(other, ray)?.ok_or(doubt),
+        match (self.solid(one), self.solid(other)) {
+            (Solid::Sphere(one), Solid::Sphere(other)) => {
+                one.compare_abreast(other, ray)?.ok_or(doubt)
+            }
             _ => Err(doubt),
         }
     }
@@ -282,13 +308,11 @@ impl<'f, R: Real> View<'f, R> {
         ahead: bool,
         kinds: SolidKinds,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
-        match self.spheres.get(solid) {
-            Some(_) if kinds == SolidKinds::Tetrahedra => Ok(None),
-            None if kinds == SolidKinds::Spheres => Ok(None),
-            Some(sphere) if ahead && !sphere.is_ahead(ray)? => Ok(None),
-            Some(sphere) => sphere.first_hit(ray),
-            None => {
-                let t = &self.tetrahedra[solid - self.spheres.len()];
+        match self.solid(solid) {
+            solid if !kinds.hold(&solid) => Ok(None),
+            Solid::Sphere(sphere) if ahead && !sphere.is_ahead(ray)? => Ok(None),
+            Solid::Sphere(sphere) => sphere.first_hit(ray),
+            Solid::Tetrahedron(t) => {
                 if ahead && !t.solid.is_ahead(&t.from_eye, ray)? {
                     return Ok(None);
                 }
@@ -318,7 +342,7 @@ impl<'f, R: Real> View<'f, R> {
     /// All solids that stand between the ray's origin and the light.
     pub(super) fn casters(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
         let mut all = Vec::new();
-        for solid in 0..self.spheres.len() + self.tetrahedra.len() {
+        for solid in 0..self.solid_count() {
             if self.is_ahead(solid, ray)? {
                 all.push(solid);
             }
@@ -329,12 +353,9 @@ impl<'f, R: Real> View<'f, R> {
     /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the
     /// light.
     pub(super) fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        match self.spheres.get(solid) {
-            Some(sphere) => sphere.is_ahead(ray),
-            None => {
-                let t = &self.tetrahedra[solid - self.spheres.len()];
-                t.solid.is_ahead(&t.to_light, ray)
-            }
+        match self.solid(solid) {
+            Solid::Sphere(sphere) => sphere.is_ahead(ray),
+            Solid::Tetrahedron(t) => t.solid.is_ahead(&t.to_light, ray),
         }
     }
 

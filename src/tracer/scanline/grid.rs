@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::frame::PIXEL;
+use crate::tracer::frame::{PIXEL, from_middle};
 
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;
@@ -35,7 +35,7 @@ impl Grid {
     /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
     #[inline]
     pub(crate) fn coordinate(&self, number: u32) -> f64 {
-        PIXEL * (f64::from(number) - self.half)
+        PIXEL * from_middle(number, self.half)
     }
 
     /// The first column at or after each position, given in columns: a whole number.

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::Bounded;
+use crate::scene::Solid;
 use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::decision::{Decision, Seen};
@@ -26,7 +27,7 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::RowSphere;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
-use crate::tracer::view::View;
+use crate::tracer::view::{TetrahedronInView, View};
 
 /// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
 /// the scene, or the one in the mirror.
@@ -87,9 +88,13 @@ impl<'p, 's> Bodies<'p, 's> {
 
     /// The body of a solid, whose regions and paints are added.
     fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
-        match (self.view.spheres.get(solid.number), solid.outline.ellipse()) {
-            (Some(sphere), Some(outline)) => self.sphere(solid.number, sphere, outline, parts),
-            _ => self.front_faces(solid, parts),
+        match (self.view.solid(solid.number), solid.outline.ellipse()) {
+            (Solid::Sphere(sphere), Some(outline)) => {
+                self.sphere(solid.number, sphere, outline, parts)
+            }
+            // The outline of a sphere is an ellipse.
+            (Solid::Sphere(_), None) => Body::Flat(parts.paints.of(Decision::Background)),
+            (Solid::Tetrahedron(t), _) => self.front_faces(solid, t, parts),
         }
     }
 
@@ -118,14 +123,16 @@ impl<'p, 's> Bodies<'p, 's> {
         if self.picture.stage == Stage::Spheres {
             return Body::Flat(paint(false));
         }
-        let surface = self.picture.surface.as_ref().filter(|_| self.mirrored);
-        let mirror = surface.and_then(|surface| surface.mirror.as_ref());
-        let own = self.picture.solid_color(number);
-        let own = mirror.map_or(own, |mirror| own * mirror.reflectance);
+        let color = self.picture.solid_color(number);
+        let color = if self.mirrored {
+            self.picture.reflected(color)
+        } else {
+            color
+        };
         let lighting = self
             .lighting
             .get_or_init(|| Lighting::new(&self.view.shading));
-        let row_sphere = RowSphere::new(sphere, outline, lighting, own, self.shadows);
+        let row_sphere = RowSphere::new(sphere, outline, lighting, color, self.shadows);
         let casters = if self.shadows {
             let facts = self.picture.scene.facts();
             let solids = facts.casters.on(number, None);
@@ -145,9 +152,13 @@ impl<'p, 's> Bodies<'p, 's> {
         }))
     }
 
-    fn front_faces<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+    fn front_faces<'f>(
+        &self,
+        solid: &Outlined<'f>,
+        t: &TetrahedronInView<Bounded>,
+        parts: &mut Builder<'f, '_>,
+    ) -> Body<'f> {
         let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
-        let t = &self.view.tetrahedra[solid.number - self.view.spheres.len()];
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
         for (face, plane) in solid.front_faces {
             let turned_away = self.shadows && t.solid.turned_away(*face);
@@ -178,7 +189,7 @@ impl<'p, 's> Bodies<'p, 's> {
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
         let outline = solid.outline.half_planes();
         let pairs = t.solid.entered_pairs(&t.from_eye);
-        let pairs = pairs.filter_map(|(i, j, first)| {
+        let pairs = pairs.filter_map(|((i, j), first)| {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
             let crease = Region::new(crease, None, grid)
                 .within(rows)

@@ -3,7 +3,7 @@
 use bumpalo::Bump;
 
 use crate::number::Bounded;
-use crate::scene::Side;
+use crate::scene::{Side, Solid};
 use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Extent;
@@ -15,7 +15,7 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
-use crate::tracer::view::View;
+use crate::tracer::view::{SolidKinds, View};
 
 /// The outline of a solid, and its depth.
 pub(crate) struct Outlined<'f> {
@@ -47,19 +47,14 @@ impl<'f> Outlines<'f> {
     ) -> Self {
         let (facts, stage) = (picture.scene.facts(), picture.stage);
         let mirrored = within.is_some();
-        let spheres = view.spheres.len();
-        let count = spheres + view.tetrahedra.len();
-        let numbers = match stage {
-            Stage::Spheres => 0..spheres,
-            Stage::Tetrahedron => spheres..count,
-            _ => 0..count,
-        };
+        let kinds = SolidKinds::of(stage);
         let mut outlines = Outlines {
             mirrored,
             all: bumpalo::collections::Vec::new_in(arena),
             area: 0,
         };
-        for number in numbers {
+        for number in 0..view.solid_count() {
+            let solid = view.solid(number);
             let (side, extent) = (facts.sides[number], view.extents.of(number));
             let (mut first, mut end) = extent.rows(grid.size);
             if let Some(within) = within {
@@ -67,7 +62,8 @@ impl<'f> Outlines<'f> {
                 (first, end) = (first.max(rows.0), end.min(rows.1));
             }
             let area = extent.area(grid.size);
-            let is_seen = area > 0
+            let is_seen = kinds.hold(&solid)
+                && area > 0
                 // From this stage on all solids take part, and a hidden one is never seen.
                 && !(facts.hidden[number] && stage >= Stage::Shading)
                 // The surface mirrors nothing that is below.
@@ -78,8 +74,8 @@ impl<'f> Outlines<'f> {
             }
             outlines.area += area;
             let rows = (first, end);
-            outlines.all.push(match view.spheres.get(number) {
-                Some(sphere) => {
+            outlines.all.push(match solid {
+                Solid::Sphere(sphere) => {
                     let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
                     Outlined {
                         number,
@@ -89,8 +85,7 @@ impl<'f> Outlines<'f> {
                         front_faces: &[],
                     }
                 }
-                None => {
-                    let t = &view.tetrahedra[number - spheres];
+                Solid::Tetrahedron(t) => {
                     let screen = screen_plane(grid);
                     let met = t.solid.met(&t.from_eye);
                     let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));

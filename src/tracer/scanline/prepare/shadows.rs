@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use bumpalo::Bump;
 
 use crate::number::{Bounded, Real};
-use crate::scene::Side;
+use crate::scene::{Side, Solid};
 use crate::tracer::arena::collect;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::ParallelLines;
@@ -111,8 +111,8 @@ pub(crate) fn shadows_on<'f>(
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
         let is_ahead = is_ahead(caster);
-        match view.spheres.get(caster) {
-            Some(sphere) => {
+        match view.solid(caster) {
+            Solid::Sphere(sphere) => {
                 let before = (!is_ahead).then(|| HalfSpace {
                     normal: -to_light.vector,
                     at: sphere.center,
@@ -125,8 +125,7 @@ pub(crate) fn shadows_on<'f>(
                 let ellipse = lines.meet((sphere.center, sphere.radius), grid);
                 Region::new(collect(arena, before), Some(ellipse), grid)
             }
-            None => {
-                let t = &view.tetrahedra[caster - view.spheres.len()];
+            Solid::Tetrahedron(t) => {
                 let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
                 let planes = if is_ahead {
                     collect(arena, t.solid.met(&t.to_light).map(plane))
@@ -154,18 +153,17 @@ pub(crate) fn casters_on<'f>(
     let own = LazyCell::new(|| row_sphere.own_moment(lighting));
     casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
-        match view.spheres.get(caster) {
+        match view.solid(caster) {
             // No sphere shadows itself, nor a sphere that is listed twice.
-            Some(sphere) if sphere.support == support => None,
-            Some(sphere) => {
+            Solid::Sphere(sphere) if sphere.support == support => None,
+            Solid::Sphere(sphere) => {
                 let (moment, before) = row_sphere.moment(sphere.center, &to_light, &own);
                 let limit = to_light.squared_length * sphere.radius.squared();
                 Some(Caster::Sphere(
                     arena.alloc(ShadowCylinder::new(before, moment, limit)),
                 ))
             }
-            None => {
-                let t = &view.tetrahedra[caster - view.spheres.len()];
+            Solid::Tetrahedron(t) => {
                 let ahead = t.solid.ahead(&t.to_light);
                 let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))

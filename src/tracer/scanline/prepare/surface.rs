@@ -4,8 +4,9 @@ use std::cell::LazyCell;
 
 use bumpalo::collections::Vec as Growing;
 
+use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
-use crate::scene::{Side, SurfaceCasters};
+use crate::scene::{Side, Solid, SurfaceCasters};
 use crate::tracer::decision::Decision;
 use crate::tracer::frame::{EYE_Y, EYE_Z};
 use crate::tracer::pixel::{Picture, SeenSurface};
@@ -20,7 +21,6 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::shadows::shadows_on;
 use crate::tracer::scanline::prepare::solids::PreparedSolids;
-use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
 
@@ -49,8 +49,9 @@ impl<'f> PreparedSurface<'f> {
         let zero = Bounded::exact(0.0);
         let [one, three, ten] = [1.0, EYE_Y, EYE_Z].map(Bounded::exact);
         let third = one / three;
-        // An eye ray reaches the surface at t = Y/3 − (N/2) · height, and z = Z − 10 t there.
-        let height = surface.height_in_pixels;
+        // `Frame::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height, and z is
+        // 3N/2 − 10 t.
+        let height = surface.square.height_in_pixels;
         let plane = PixelPlane {
             origin: Vector::new(
                 zero,
@@ -92,9 +93,9 @@ impl<'f> PreparedSurface<'f> {
         let cast = shadows_on(&plane, view, casters.clone(), is_ahead, grid, parts.arena);
         // The half-planes of a tetrahedron's shadow do not tell in which rows it lies.
         let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light));
-        let rows_of = |caster: u16| match usize::from(caster).checked_sub(view.spheres.len()) {
-            Some(caster) => lines.rows_through(view.tetrahedra[caster].solid.vertices(), grid),
-            None => rows,
+        let rows_of = |caster: u16| match view.solid(usize::from(caster)) {
+            Solid::Sphere(_) => rows,
+            Solid::Tetrahedron(t) => lines.rows_through(t.solid.vertices(), grid),
         };
         let cast = casters
             .zip(cast)

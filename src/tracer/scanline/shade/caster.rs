@@ -1,7 +1,7 @@
 //! Casters on a sphere, as forms of its coordinates.
 
 use crate::number::Bounded;
-use crate::tracer::scanline::rounding::{INFLATION, U};
+use crate::number::rounding::{INFLATION, U};
 use crate::tracer::scanline::shade::sphere::{HitBox, LinearForm};
 
 /// A solid or the surface, which may stand between a pixel of a sphere and the light.

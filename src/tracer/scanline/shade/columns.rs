@@ -16,9 +16,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
+use crate::number::rounding::U;
 use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets, store_columns};
-use crate::tracer::scanline::rounding::U;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
 

@@ -1,9 +1,9 @@
 //! The light of a view in the axes of q, m and s, as in `shade/sphere.rs`: the same for all
 //! spheres.
 
+use crate::number::rounding::INFLATION;
 use crate::number::{Bounded, Real};
 use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z};
-use crate::tracer::scanline::rounding::INFLATION;
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
 

@@ -10,10 +10,10 @@
 
 use std::cmp::Ordering;
 
+use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
-use crate::tracer::scanline::rounding::{INFLATION, U};
 use crate::tracer::scanline::shade::light::{Highlight, Lighting};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::tetrahedron::HalfSpace;

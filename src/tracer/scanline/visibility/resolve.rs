@@ -3,10 +3,11 @@
 use crate::scene::Side;
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::prepare::prepared::Prepared;
-use crate::tracer::scanline::prepare::solids::{Body, FrontFace, Pair, PreparedSolids};
+use crate::tracer::scanline::prepare::solids::{Body, FrontFace, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
+use crate::tracer::tetrahedron::last_entered;
 
 /// What a gap with this coverage shows. If rows have to decide, a test is added to `depth_tests`.
 pub(crate) fn visible(
@@ -92,10 +93,13 @@ fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) 
             };
             (None, shown)
         }
-        Body::FrontFaces(front_faces, pairs) => match last_entered(pairs, coverage) {
-            Some(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
-            None => (None, Shown::Unknown),
-        },
+        Body::FrontFaces(front_faces, pairs) => {
+            let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.first));
+            match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
+                Ok(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
+                Err(()) => (None, Shown::Unknown),
+            }
+        }
     };
     Candidate {
         solid,
@@ -114,15 +118,4 @@ fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
         Some(false) => Shown::Paint(front_face.lit),
         None => Shown::Unknown,
     }
-}
-
-/// The index of the front face that eye rays enter last.
-fn last_entered(pairs: &[Pair], coverage: &Coverage) -> Option<usize> {
-    let mut last = 0;
-    for pair in pairs {
-        if pair.front_faces.0 == last && !coverage.holds(pair.first)? {
-            last = pair.front_faces.1;
-        }
-    }
-    Some(last)
 }

@@ -8,6 +8,7 @@
 use bumpalo::Bump;
 
 use crate::number::{Bounded, Real};
+use crate::scene::Solid;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Entry;
 use crate::tracer::frame::looking;
@@ -69,8 +70,8 @@ impl<'f> Separation<'f> {
 
 /// Whether solid `i` is in front of solid `j`; `None` where no plane is found that separates them.
 fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
-    let toward_j = match (view.spheres.get(i), view.spheres.get(j)) {
-        (Some(a), Some(b)) => {
+    let toward_j = match (view.solid(i), view.solid(j)) {
+        (Solid::Sphere(a), Solid::Sphere(b)) => {
             let between = b.center - a.center;
             let gap = between.squared_length() - (a.radius + b.radius).squared();
             is_positive(gap).then_some(between)
@@ -85,20 +86,21 @@ fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
 
 /// The outward normal of a face of tetrahedron `i` whose plane separates it from solid `j`.
 fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<Bounded>> {
-    let t = view.tetrahedra.get(i.checked_sub(view.spheres.len())?)?;
+    let Solid::Tetrahedron(t) = view.solid(i) else {
+        return None;
+    };
     (0..4).find_map(|face| {
         let plane = t.solid.plane(face);
         let outward = -plane.normal;
         let height = |point: Vector<Bounded>| outward.dot(point - plane.at);
-        let is_beyond = match view.spheres.get(j) {
-            Some(sphere) => {
+        let is_beyond = match view.solid(j) {
+            Solid::Sphere(sphere) => {
                 let height = height(sphere.center);
                 let limit = sphere.radius.squared() * outward.squared_length();
                 is_positive(height) && is_positive(height.squared() - limit)
             }
-            None => {
-                let other = &view.tetrahedra[j - view.spheres.len()].solid;
-                let mut heights = other.vertices().map(height).into_iter();
+            Solid::Tetrahedron(other) => {
+                let mut heights = other.solid.vertices().map(height).into_iter();
                 heights.all(is_positive)
             }
         };
