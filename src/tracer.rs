@@ -5,7 +5,7 @@
 //! order:
 //!
 //! - `kernel`, `decision`, `vector`, `line`: the kernels, what a pixel can show, points and rays;
-//! - `frame`, `view`: view space, in which the scene and its mirror image are turned by α;
+//! - `view_space`, `view`: view space, in which the scene and its mirror image are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
@@ -31,7 +31,6 @@ mod decision;
 mod error;
 mod explain;
 mod extent;
-mod frame;
 mod frame_work;
 mod kernel;
 mod ladder;
@@ -54,6 +53,7 @@ mod target;
 mod tetrahedron;
 mod vector;
 mod view;
+mod view_space;
 
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;

@@ -82,7 +82,7 @@ impl<R: Real> Picture<'_, R> {
     }
 
     fn explain_ray(&self, text: &mut String, column: u32, row: u32) -> Result<(), R::Doubt> {
-        let ray = self.frame.eye_ray(column, row);
+        let ray = self.transform.eye_ray(column, row);
         let half = f64::from(self.size) / 2.0;
         let [u, v] = [column, row].map(|number| Short((f64::from(number) - half) / half));
         say(text, "u, v", format!("{u}, {v}"));
@@ -102,7 +102,7 @@ impl<R: Real> Picture<'_, R> {
             say(text, "meets", format!("{name} at t = {t}{rank}"));
         }
         if let Some(surface) = &self.surface {
-            let (depth, point) = self.frame.on_surface(&surface.square, &ray, row);
+            let (depth, point) = self.transform.on_surface(&surface.square, &ray, row);
             let inside = if surface.square.contains(point)? {
                 "in the square"
             } else {
@@ -126,7 +126,7 @@ impl<R: Real> Picture<'_, R> {
         row: u32,
         decision: Decision,
     ) -> Result<(), R::Doubt> {
-        let ray = self.frame.eye_ray(column, row);
+        let ray = self.transform.eye_ray(column, row);
         match (decision, &self.surface) {
             (Decision::Background, _) => say(text, "shows", "the background: nothing is hit"),
             (Decision::Solid(seen), _) => {
@@ -134,7 +134,7 @@ impl<R: Real> Picture<'_, R> {
                 self.explain_solid(text, &self.view, ((column, row), &ray), false, seen)?;
             }
             (_, Some(surface)) => {
-                let (_, point) = self.frame.on_surface(&surface.square, &ray, row);
+                let (_, point) = self.transform.on_surface(&surface.square, &ray, row);
                 say(text, "shows", "the surface, which no solid hides");
                 let casters = self
                     .view
@@ -307,7 +307,7 @@ impl<R: Real> Picture<'_, R> {
     }
 
     fn turned_back(&self, x: f64, y: f64, z: f64) -> [f64; 3] {
-        let (sin, cos) = (self.frame.sin.to_f64(), self.frame.cos.to_f64());
+        let (sin, cos) = (self.transform.sin.to_f64(), self.transform.cos.to_f64());
         [x * cos + z * sin, y, z * cos - x * sin]
     }
 

@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 use bumpalo::Bump;
 
 use super::arena::collect;
-use super::frame::{EYE_SQUARED, EYE_Y, EYE_Z, Frame, PIXEL, from_middle, reflect};
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
+use super::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL, ViewTransform, from_middle, reflect};
 use crate::number::Bounded;
 use crate::scene::Scene;
 
@@ -228,22 +228,22 @@ fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
 impl<'f> Extents<'f> {
     pub(super) fn new(
         scene: &'f Scene,
-        frame: &Frame<f64>,
-        bounded: &Frame<Bounded>,
+        transform: &ViewTransform<f64>,
+        bounded: &ViewTransform<Bounded>,
         size: u32,
         arena: &'f Bump,
     ) -> Self {
         // To turn, scale, reflect and project a point takes fewer than 32 roundings, each by at
         // most u = 2⁻⁵³ of these magnitudes: 2⁻⁴⁰ of them is more than all roundings, and far less
         // than a pixel.
-        let least = PIXEL * f64::from(size) + 2.0 * frame.mirror(scene).unwrap_or(0.0).abs();
+        let least = PIXEL * f64::from(size) + 2.0 * transform.mirror(scene).unwrap_or(0.0).abs();
         let rounding = |points: &[Vector<f64>], radius: f64| {
             let magnitudes = points.iter().map(|p| p.x.abs() + p.y.abs() + p.z.abs());
             let largest = magnitudes.fold(0.0, f64::max);
             (largest + 2.0 * radius + least) / (1_u64 << 40) as f64
         };
         let solids = |mirror: Option<f64>| {
-            let point = |p| reflect(frame.point(p), mirror);
+            let point = |p| reflect(transform.point(p), mirror);
             let root = EYE_SQUARED.sqrt();
             // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
             let toward = |p: Vector<f64>| {
@@ -251,7 +251,7 @@ impl<'f> Extents<'f> {
             };
             let spheres = scene.spheres().iter().map(|sphere| {
                 let center = point(sphere.center);
-                let radius = sphere.radius * frame.scale;
+                let radius = sphere.radius * transform.scale;
                 let rounding = rounding(&[center], radius);
                 // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
                 let half = (radius, radius * root / EYE_Z);
@@ -281,7 +281,7 @@ impl<'f> Extents<'f> {
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
-                frame.point(glam::DVec3::new(
+                transform.point(glam::DVec3::new(
                     x * surface.half_width,
                     surface.height,
                     z * surface.half_width,
@@ -289,7 +289,7 @@ impl<'f> Extents<'f> {
             });
             Extent::of(&corners, (0.0, 0.0), rounding(&corners, 0.0), size)
         });
-        let mirror = frame.mirror(scene);
+        let mirror = transform.mirror(scene);
         let mirrored = if mirror.is_some() {
             solids(mirror)
         } else {

@@ -10,12 +10,12 @@ use bumpalo_herd::Herd;
 use super::arena::{Arena, Room};
 use super::decision::Decision;
 use super::extent::Extents;
-use super::frame::Frame;
 use super::line::Normal;
 use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::vector::Vector;
 use super::view::FrameSigns;
+use super::view_space::ViewTransform;
 use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real, Session};
 use crate::scene::Scene;
 use crate::stage::Stage;
@@ -52,29 +52,29 @@ pub(super) trait RowPixels: Pixels {
 
 /// What all arithmetics of a frame share.
 struct FrameSetup<'f> {
-    frame: Frame<Bounded>,
+    transform: ViewTransform<Bounded>,
     signs: FrameSigns<'f>,
     extents: Extents<'f>,
 }
 
 impl<'f> FrameSetup<'f> {
     fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
-        let bounded = frame::<Bounded>(alpha, size);
-        let plain = frame::<f64>(alpha, size);
-        let double_double = LazyCell::new(|| frame::<DoubleDouble>(alpha, size));
+        let bounded = transform::<Bounded>(alpha, size);
+        let plain = transform::<f64>(alpha, size);
+        let double_double = LazyCell::new(|| transform::<DoubleDouble>(alpha, size));
         let signs = |mirrored| {
             bounded
                 .signs(scene, &plain, mirrored, arena)
                 .or_else(|Doubt| double_double.signs(scene, &plain, mirrored, arena))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        frame::<Expression>(alpha, size).signs(scene, &plain, mirrored, arena)
+                        transform::<Expression>(alpha, size).signs(scene, &plain, mirrored, arena)
                     })
                 })
                 .map(|signs| {
                     signs.refined(scene, &bounded, mirrored, || {
                         Expression::session(|| {
-                            let h = frame::<Expression>(alpha, size).halfway(scene, mirrored);
+                            let h = transform::<Expression>(alpha, size).halfway(scene, mirrored);
                             Vector {
                                 x: h.x.to_double_double(),
                                 y: h.y.to_double_double(),
@@ -86,7 +86,7 @@ impl<'f> FrameSetup<'f> {
         };
         let Ok(signs) = FrameSigns::decide(mirrors(scene, stage), signs);
         FrameSetup {
-            frame: bounded,
+            transform: bounded,
             signs,
             extents: Extents::new(scene, &plain, &bounded, size, arena),
         }
@@ -96,7 +96,7 @@ impl<'f> FrameSetup<'f> {
         &self,
         scene: &'a Scene,
         stage: Stage,
-        frame: &Frame<R>,
+        transform: &ViewTransform<R>,
         size: u32,
         room: &impl Room<'a>,
     ) -> Picture<'a, R>
@@ -104,7 +104,7 @@ impl<'f> FrameSetup<'f> {
         'f: 'a,
     {
         let (signs, extents) = (&self.signs, &self.extents);
-        Picture::new(scene, stage, frame, size, signs, extents, room)
+        Picture::new(scene, stage, transform, size, signs, extents, room)
     }
 }
 
@@ -126,8 +126,8 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
         let arena = &arena.frame;
         let setup = FrameSetup::new(scene, stage, alpha, size, arena);
         Plain {
-            bounded: setup.picture(scene, stage, &setup.frame, size, &arena),
-            picture: setup.picture(scene, stage, &frame(alpha, size), size, &arena),
+            bounded: setup.picture(scene, stage, &setup.transform, size, &arena),
+            picture: setup.picture(scene, stage, &transform(alpha, size), size, &arena),
         }
     }
 
@@ -204,7 +204,7 @@ impl<'f> Ladder<'f> {
             alpha,
             size,
             lowest,
-            bounded: setup.picture(scene, stage, &setup.frame, size, &arena),
+            bounded: setup.picture(scene, stage, &setup.transform, size, &arena),
             setup,
             double_double: OnceLock::new(),
             late,
@@ -214,9 +214,9 @@ impl<'f> Ladder<'f> {
     }
 }
 
-fn frame<R: Real>(alpha: f64, size: u32) -> Frame<R> {
+fn transform<R: Real>(alpha: f64, size: u32) -> ViewTransform<R> {
     let (sin, cos) = R::sin_cos(alpha);
-    Frame::new(sin, cos, size)
+    ViewTransform::new(sin, cos, size)
 }
 
 impl<'f> Ladder<'f> {
@@ -262,9 +262,9 @@ impl<'f> Ladder<'f> {
     where
         'f: 'a,
     {
-        let frame = frame(self.alpha, self.size);
+        let transform = transform(self.alpha, self.size);
         self.setup
-            .picture(self.scene, self.stage, &frame, self.size, room)
+            .picture(self.scene, self.stage, &transform, self.size, room)
     }
 }
 

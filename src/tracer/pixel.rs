@@ -8,12 +8,12 @@ use glam::DVec3;
 use super::arena::Room;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
-use super::frame::{Frame, looking};
 use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use super::view::{FrameSigns, SolidKinds, View};
+use super::view_space::{ViewTransform, looking};
 use crate::number::{Real, all, any};
 use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
@@ -23,7 +23,7 @@ pub(super) struct Picture<'f, R> {
     pub(super) scene: &'f Scene,
     pub(super) stage: Stage,
     pub(super) size: u32,
-    pub(super) frame: Frame<R>,
+    pub(super) transform: ViewTransform<R>,
     pub(super) view: View<'f, R>,
     /// From stage 5 on, if the scene has a surface.
     pub(super) surface: Option<SeenSurface<'f, R>>,
@@ -104,14 +104,14 @@ impl<'f, R: Real> Picture<'f, R> {
     pub(super) fn new(
         scene: &'f Scene,
         stage: Stage,
-        frame: &Frame<R>,
+        transform: &ViewTransform<R>,
         size: u32,
         signs: &FrameSigns<'_>,
         extents: &Extents<'f>,
         room: &impl Room<'f>,
     ) -> Self {
         let seen = extents.surface.as_ref().zip(extents.casters_on_surface);
-        let surface = match (scene.surface(), frame.surface(scene), seen) {
+        let surface = match (scene.surface(), transform.surface(scene), seen) {
             (Some(described), Some(square), Some((extent, casters))) if stage >= Stage::Shadow => {
                 Some(SeenSurface {
                     square,
@@ -119,7 +119,7 @@ impl<'f, R: Real> Picture<'f, R> {
                     casters,
                     color: Vector::exact(described.color),
                     mirror: signs.mirrored.as_ref().map(|signs| Mirror {
-                        view: View::new(scene, frame, signs, extents.mirrored, true, room),
+                        view: View::new(scene, transform, signs, extents.mirrored, true, room),
                         reflectance: R::exact(described.reflectance),
                     }),
                 })
@@ -130,8 +130,8 @@ impl<'f, R: Real> Picture<'f, R> {
             scene,
             stage,
             size,
-            frame: *frame,
-            view: View::new(scene, frame, &signs.direct, extents.direct, false, room),
+            transform: *transform,
+            view: View::new(scene, transform, &signs.direct, extents.direct, false, room),
             surface,
         }
     }
@@ -168,7 +168,7 @@ impl<'f, R: Real> Picture<'f, R> {
             Decision::Mirrored(seen) => (self.view(true), seen),
             _ => return Ok(None),
         };
-        let ray = self.frame.eye_ray(column, row);
+        let ray = self.transform.eye_ray(column, row);
         let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, SolidKinds::All)? else {
             return Ok(None);
         };
@@ -225,7 +225,7 @@ impl<'f, R: Real> Picture<'f, R> {
 
     /// Stages 2 to 4: the first hit, without shadows.
     fn solid_alone(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
-        let ray = self.frame.eye_ray(column, row);
+        let ray = self.transform.eye_ray(column, row);
         let kinds = SolidKinds::of(self.stage);
         let hit = self.view.first_hit((column, row), &ray, None, kinds)?;
         Ok(match hit {
@@ -243,7 +243,7 @@ impl<'f, R: Real> Picture<'f, R> {
 
     /// Stages 5 to 7: the first hit among the solids and the surface.
     fn traced(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
-        let ray = self.frame.eye_ray(column, row);
+        let ray = self.transform.eye_ray(column, row);
         let first = self
             .view
             .first_hit((column, row), &ray, None, SolidKinds::All)?;
@@ -256,7 +256,7 @@ impl<'f, R: Real> Picture<'f, R> {
             .as_ref()
             .filter(|surface| surface.extent.holds(column, row))
         {
-            let (depth, point) = self.frame.on_surface(&surface.square, &ray, row);
+            let (depth, point) = self.transform.on_surface(&surface.square, &ray, row);
             let hides = || match &hit {
                 // At equal depths, the solid is seen, and not the surface.
                 Some((_, hit)) if hit.support == surface.square.support => Ok(false),

@@ -50,7 +50,7 @@
 //! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a bounding ball
 //!   (`bounding_ball`), a test whether it lies inside of others (`hidden`), what is exactly decided
 //!   about it (`exact`), what may shade it (`casters`);
-//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `frame`,
+//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view_space`,
 //!   `view`, `extent`, `pixel`, `palette`, `decision`, `explain`, `colors` and `mistaken` name every
 //!   kind of solid. Solids are numbered spheres first: look for `spheres.len()`;
 //! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/solids`,

@@ -1,7 +1,7 @@
 //! Which solids may stand between a pixel of the surface and the light.
 
-use super::frame::Frame;
 use super::surface::Surface;
+use super::view_space::ViewTransform;
 use crate::number::{Bounded, Real};
 use crate::scene::{Scene, SurfaceCasters};
 
@@ -12,24 +12,24 @@ pub(super) struct CastersOnSurface<'f> {
     surface: Surface<Bounded>,
     /// 1 over the frame's scale.
     inverse: Bounded,
-    frame: Frame<Bounded>,
+    transform: ViewTransform<Bounded>,
 }
 
 impl<'f> CastersOnSurface<'f> {
     /// `None` where there is no surface.
-    pub(super) fn new(scene: &'f Scene, frame: &Frame<Bounded>) -> Option<Self> {
+    pub(super) fn new(scene: &'f Scene, transform: &ViewTransform<Bounded>) -> Option<Self> {
         Some(CastersOnSurface {
             casters: scene.facts().surface_casters.as_ref()?,
-            surface: frame.surface(scene)?,
-            inverse: Bounded::exact(1.0) / frame.scale,
-            frame: *frame,
+            surface: transform.surface(scene)?,
+            inverse: Bounded::exact(1.0) / transform.scale,
+            transform: *transform,
         })
     }
 
     /// The casters at a pixel that shows the surface. Meaningless for others.
     pub(super) fn at(&self, (column, row): (u32, u32)) -> &'f [u16] {
-        let ray = self.frame.eye_ray(column, row);
-        let (_, point) = self.frame.on_surface(&self.surface, &ray, row);
+        let ray = self.transform.eye_ray(column, row);
+        let (_, point) = self.transform.on_surface(&self.surface, &ray, row);
         let [x, z] = self.surface.along_sides(point).map(|along| {
             let along = along * self.inverse;
             (along.at_least(), along.at_most())

@@ -340,7 +340,7 @@ mod tests {
     use crate::number::DoubleDouble;
     use crate::random::Random;
     use crate::scene::Scene;
-    use crate::tracer::frame::{Frame, looking};
+    use crate::tracer::view_space::{ViewTransform, looking};
 
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
@@ -352,7 +352,7 @@ mod tests {
             let mut vector = |max: f64| DVec3::new(number(max), number(max), number(max));
             let alpha = 3.0 * vector(1.0).x;
             let (sin, cos) = f64::sin_cos(alpha);
-            let plain = Frame::<f64>::new(sin, cos, 500);
+            let plain = ViewTransform::<f64>::new(sin, cos, 500);
             // In later rounds eye rays run nearly along an edge.
             let beside = 10_f64.powi(-round / 20);
             let along = plain.looking_in_scene(round % 2 == 0) * 0.1;
@@ -365,10 +365,12 @@ mod tests {
             let scene = Scene::from_toml(&text).unwrap();
             let solid = &scene.tetrahedra()[0];
             for mirrored in [false, true] {
-                let frame = |(sin, cos)| Frame::<DoubleDouble>::new(sin, cos, 500);
-                let frame = frame(DoubleDouble::sin_cos(alpha));
-                let mirror = frame.mirror(&scene).filter(|_| mirrored);
-                let truth = frame.tetrahedron(&scene, 0, mirror).face_signs(&looking());
+                let transform = |(sin, cos)| ViewTransform::<DoubleDouble>::new(sin, cos, 500);
+                let transform = transform(DoubleDouble::sin_cos(alpha));
+                let mirror = transform.mirror(&scene).filter(|_| mirrored);
+                let truth = transform
+                    .tetrahedron(&scene, 0, mirror)
+                    .face_signs(&looking());
                 let d = plain.looking_in_scene(mirrored);
                 let right_handed = scene.facts().right_handed[0];
                 if let Some(signs) = certain_face_signs(&solid.vertices, right_handed, d) {

@@ -12,22 +12,22 @@ use bumpalo::Bump;
 
 use super::arena::Room;
 use super::extent::ExtentsOfSolids;
-use super::frame::{Frame, looking, reflect};
 use super::line::{Hit, Line};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
 use super::tetrahedron::{EdgeFunctions, Tetrahedron, certain_face_signs};
 use super::vector::Vector;
+use super::view_space::{ViewTransform, looking, reflect};
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Solid, Support};
 use crate::stage::Stage;
 
-impl<R: Real> Frame<R> {
+impl<R: Real> ViewTransform<R> {
     /// The signs that a view of this frame needs. `plain` is the same frame in f64.
     pub(super) fn signs<'f>(
         &self,
         scene: &Scene,
-        plain: &Frame<f64>,
+        plain: &ViewTransform<f64>,
         mirrored: bool,
         arena: &'f Bump,
     ) -> Result<ViewSigns<'f>, R::Doubt> {
@@ -88,14 +88,14 @@ impl ViewSigns<'_> {
     pub(super) fn refined(
         self,
         scene: &Scene,
-        frame: &Frame<Bounded>,
+        transform: &ViewTransform<Bounded>,
         mirrored: bool,
         refine: impl FnOnce() -> Vector<DoubleDouble>,
     ) -> Self {
         let halfway = match self.halfway {
             Halfway::None => Halfway::None,
             other => {
-                let h = frame.halfway(scene, mirrored);
+                let h = transform.halfway(scene, mirrored);
                 // 15 bits more than an f32 has leave few pixels in doubt.
                 const ENOUGH: f64 = f32::EPSILON as f64 * f32::EPSILON as f64 * 128.0;
                 let is_good = [h.x, h.y, h.z].iter().all(|x| x.error() < ENOUGH);
@@ -177,14 +177,14 @@ impl<'f, R: Real> View<'f, R> {
     /// The scene itself, or in the mirror.
     pub(super) fn new(
         scene: &Scene,
-        frame: &Frame<R>,
+        transform: &ViewTransform<R>,
         signs: &ViewSigns<'_>,
         extents: ExtentsOfSolids<'f>,
         mirrored: bool,
         room: &impl Room<'f>,
     ) -> Self {
-        let mirror = frame.mirror(scene).filter(|_| mirrored);
-        let to_light = frame.direction_to_light(scene, mirrored);
+        let mirror = transform.mirror(scene).filter(|_| mirrored);
+        let to_light = transform.direction_to_light(scene, mirrored);
         let halfway = match signs.halfway {
             Halfway::None => None,
             Halfway::Given(given) => {
@@ -203,8 +203,8 @@ impl<'f, R: Real> View<'f, R> {
                 .iter()
                 .zip(&scene.facts().spheres)
                 .map(|(sphere, &support)| Sphere {
-                    center: reflect(frame.point(sphere.center), mirror),
-                    radius: R::exact(sphere.radius) * frame.scale,
+                    center: reflect(transform.point(sphere.center), mirror),
+                    radius: R::exact(sphere.radius) * transform.scale,
                     support,
                 });
         let tetrahedra = signs
@@ -212,7 +212,7 @@ impl<'f, R: Real> View<'f, R> {
             .iter()
             .enumerate()
             .map(|(index, &face_signs)| {
-                let solid = frame.tetrahedron(scene, index, mirror);
+                let solid = transform.tetrahedron(scene, index, mirror);
                 let from_eye = solid.edge_functions(&looking(), face_signs);
                 let along_light = solid.edge_functions_to_light(&to_light);
                 TetrahedronInView {

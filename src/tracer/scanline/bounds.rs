@@ -192,7 +192,7 @@ impl Case<'_> {
                 let min_squares = row_sphere.min_squares.iter();
                 let zone = min_squares.take_while(|least| squared < **least).count();
                 let samples = zones[zone];
-                let line = self.picture.frame.eye_ray(first + lane as u32, row);
+                let line = self.picture.transform.eye_ray(first + lane as u32, row);
                 let hit = self.sphere.first_hit(&line).unwrap().unwrap();
                 let shading = &self.view.shading;
                 let terms = shading.terms(&hit.normal).unwrap();

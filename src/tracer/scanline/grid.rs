@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::frame::{PIXEL, from_middle};
+use crate::tracer::view_space::{PIXEL, from_middle};
 
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;

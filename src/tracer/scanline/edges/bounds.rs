@@ -90,7 +90,9 @@ fn check_spheres(
                     y: [y, y],
                 };
                 let (lower, upper) = depth.bounds(None, at);
-                let hit = exact.first_hit(&truth.frame.eye_ray(column, row)).unwrap();
+                let hit = exact
+                    .first_hit(&truth.transform.eye_ray(column, row))
+                    .unwrap();
                 if let Some(hit) = hit {
                     let part = share(hit.depth, lower, upper);
                     shares.sphere_depth = shares.sphere_depth.max(part);
@@ -142,7 +144,7 @@ fn check_tetrahedra(
                 .step_by(41)
                 .flat_map(|x| (0..SIZE).step_by(37).map(move |y| (x, y)))
             {
-                let ray = truth.frame.eye_ray(column, row);
+                let ray = truth.transform.eye_ray(column, row);
                 let n_dot_d = plane.normal.dot(ray.direction.vector);
                 let exact = plane.normal.dot(plane.at - ray.origin) / n_dot_d;
                 let [x, y] = [column, row].map(|number| [grid.coordinate(number); 2]);

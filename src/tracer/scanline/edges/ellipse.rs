@@ -5,12 +5,12 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
-use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL};
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::vector::Vector;
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL};
 
 /// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that are linear
 /// functions of Y: an ellipse, with a horizontal chord in every row.

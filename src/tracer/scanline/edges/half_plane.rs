@@ -5,11 +5,11 @@ use fearless_simd::prelude::*;
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
-use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::tetrahedron::HalfSpace;
+use crate::tracer::view_space::PIXEL;
 
 /// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
 #[derive(Clone, Copy)]

@@ -3,12 +3,12 @@
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::scene::Support;
-use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z, looking};
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, looking};
 
 /// The parameter at which eye rays enter a solid.
 pub(crate) enum Depth<'f> {

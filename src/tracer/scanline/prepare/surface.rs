@@ -8,7 +8,6 @@ use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Solid, SurfaceCasters};
 use crate::tracer::decision::Decision;
-use crate::tracer::frame::{EYE_Y, EYE_Z};
 use crate::tracer::pixel::{Picture, SeenSurface};
 use crate::tracer::scanline::edges::ellipse::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
@@ -23,6 +22,7 @@ use crate::tracer::scanline::prepare::shadows::shadows_on;
 use crate::tracer::scanline::prepare::solids::PreparedSolids;
 use crate::tracer::scanline::write::paint::PaintNumber;
 use crate::tracer::vector::Vector;
+use crate::tracer::view_space::{EYE_Y, EYE_Z};
 
 /// The surface of a frame, prepared for its rows.
 pub(crate) struct PreparedSurface<'f> {
@@ -49,8 +49,8 @@ impl<'f> PreparedSurface<'f> {
         let zero = Bounded::exact(0.0);
         let [one, three, ten] = [1.0, EYE_Y, EYE_Z].map(Bounded::exact);
         let third = one / three;
-        // `Frame::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height, and z is
-        // 3N/2 − 10 t.
+        // `ViewTransform::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height, and
+        // z is 3N/2 − 10 t.
         let height = surface.square.height_in_pixels;
         let plane = PixelPlane {
             origin: Vector::new(

@@ -17,10 +17,10 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::U;
-use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets, store_columns};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
+use crate::tracer::view_space::PIXEL;
 
 /// Rounding moves a root by less than so many columns, or else the guess is rejected.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;

@@ -3,9 +3,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, SimdFloatElement};
 
-use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::offsets;
 use crate::tracer::scanline::shade::sphere::Cycle;
+use crate::tracer::view_space::PIXEL;
 
 /// f32 or f64.
 pub(crate) trait Lane: SimdFloatElement {

@@ -3,9 +3,9 @@
 
 use crate::number::rounding::INFLATION;
 use crate::number::{Bounded, Real};
-use crate::tracer::frame::{EYE_SQUARED, EYE_Y, EYE_Z};
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z};
 
 /// The logarithm of a power that is too small to be seen: e⁻⁴¹ < 2⁻⁵⁹.
 const CUT: f64 = -41.0;

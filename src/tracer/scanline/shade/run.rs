@@ -6,13 +6,13 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::decision::Decision;
-use crate::tracer::frame::PIXEL;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::SphereInRow;
 use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
 use crate::tracer::scanline::write::paint::{Paint, fill};
+use crate::tracer::view_space::PIXEL;
 
 /// What the shading of a run needs, kept from run to run.
 #[derive(Default)]

@@ -11,10 +11,10 @@ use crate::number::{Bounded, Real};
 use crate::scene::Solid;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Entry;
-use crate::tracer::frame::looking;
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
+use crate::tracer::view_space::looking;
 
 /// The largest number of solids for which all pairs are tested in every frame.
 const MOST: usize = 16;

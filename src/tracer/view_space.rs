@@ -31,7 +31,7 @@ pub(super) const EYE_SQUARED: f64 = EYE_Y * EYE_Y + EYE_Z * EYE_Z;
 
 /// The rotation and the scale from the scene into view space.
 #[derive(Clone, Copy)]
-pub(super) struct Frame<R> {
+pub(super) struct ViewTransform<R> {
     /// sin α.
     pub(super) sin: R,
     /// cos α.
@@ -42,11 +42,11 @@ pub(super) struct Frame<R> {
     half: f64,
 }
 
-impl<R: Real> Frame<R> {
+impl<R: Real> ViewTransform<R> {
     /// `sin` and `cos` are those of α, `size` is N.
     pub(super) fn new(sin: R, cos: R, size: u32) -> Self {
         let half = f64::from(size) / 2.0;
-        Frame {
+        ViewTransform {
             sin,
             cos,
             scale: R::exact(PIXEL * half),
@@ -159,7 +159,7 @@ impl<R: Real> Frame<R> {
     }
 }
 
-impl Frame<f64> {
+impl ViewTransform<f64> {
     /// The direction of eye rays in the scene's own axes; of mirrored rays, reflected back.
     pub(super) fn looking_in_scene(&self, mirrored: bool) -> DVec3 {
         let y = if mirrored { EYE_Y } else { -EYE_Y };
