@@ -10,33 +10,33 @@ use bumpalo_herd::{Herd, Member};
 #[derive(Default)]
 pub(super) struct Arena {
     /// For the parts that are made before the first row.
-    pub(super) frame: Bump,
+    pub(super) setup: Bump,
     /// For the parts that threads make while they trace.
-    pub(super) late: Herd,
+    pub(super) threads: Herd,
 }
 
 impl Arena {
     /// Makes room for the next frame.
     pub(super) fn clear(&mut self) {
-        self.frame.reset();
-        self.late.reset();
+        self.setup.reset();
+        self.threads.reset();
     }
 }
 
 /// Memory for slices that live as long as a frame.
-pub(super) trait Room<'f> {
+pub(super) trait SliceAllocator<'f> {
     /// A slice of all items.
-    fn lay<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T];
+    fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T];
 }
 
-impl<'f> Room<'f> for &'f Bump {
-    fn lay<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
+impl<'f> SliceAllocator<'f> for &'f Bump {
+    fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
         self.alloc_slice_fill_iter(items)
     }
 }
 
-impl<'f> Room<'f> for Member<'f> {
-    fn lay<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
+impl<'f> SliceAllocator<'f> for Member<'f> {
+    fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
         self.alloc_slice_fill_iter(items)
     }
 }

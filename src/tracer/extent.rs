@@ -236,14 +236,15 @@ impl<'f> Extents<'f> {
         // To turn, scale, reflect and project a point takes fewer than 32 roundings, each by at
         // most u = 2⁻⁵³ of these magnitudes: 2⁻⁴⁰ of them is more than all roundings, and far less
         // than a pixel.
-        let least = PIXEL * f64::from(size) + 2.0 * transform.mirror(scene).unwrap_or(0.0).abs();
+        let least =
+            PIXEL * f64::from(size) + 2.0 * transform.surface_height(scene).unwrap_or(0.0).abs();
         let rounding = |points: &[Vector<f64>], radius: f64| {
             let magnitudes = points.iter().map(|p| p.x.abs() + p.y.abs() + p.z.abs());
             let largest = magnitudes.fold(0.0, f64::max);
             (largest + 2.0 * radius + least) / (1_u64 << 40) as f64
         };
-        let solids = |mirror: Option<f64>| {
-            let point = |p| reflect(transform.point(p), mirror);
+        let solids = |mirror_height: Option<f64>| {
+            let point = |p| reflect(transform.point(p), mirror_height);
             let root = EYE_SQUARED.sqrt();
             // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
             let toward = |p: Vector<f64>| {
@@ -289,9 +290,9 @@ impl<'f> Extents<'f> {
             });
             Extent::of(&corners, (0.0, 0.0), rounding(&corners, 0.0), size)
         });
-        let mirror = transform.mirror(scene);
-        let mirrored = if mirror.is_some() {
-            solids(mirror)
+        let mirror_height = transform.surface_height(scene);
+        let mirrored = if mirror_height.is_some() {
+            solids(mirror_height)
         } else {
             ExtentsOfSolids::NONE
         };

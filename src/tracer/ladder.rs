@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use bumpalo::Bump;
 use bumpalo_herd::Herd;
 
-use super::arena::{Arena, Room};
+use super::arena::{Arena, SliceAllocator};
 use super::decision::Decision;
 use super::extent::Extents;
 use super::line::Normal;
@@ -98,13 +98,13 @@ impl<'f> FrameSetup<'f> {
         stage: Stage,
         transform: &ViewTransform<R>,
         size: u32,
-        room: &impl Room<'a>,
+        allocator: &impl SliceAllocator<'a>,
     ) -> Picture<'a, R>
     where
         'f: 'a,
     {
         let (signs, extents) = (&self.signs, &self.extents);
-        Picture::new(scene, stage, transform, size, signs, extents, room)
+        Picture::new(scene, stage, transform, size, signs, extents, allocator)
     }
 }
 
@@ -123,7 +123,7 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
         size: u32,
         arena: &'f Arena,
     ) -> Self {
-        let arena = &arena.frame;
+        let arena = &arena.setup;
         let setup = FrameSetup::new(scene, stage, alpha, size, arena);
         Plain {
             bounded: setup.picture(scene, stage, &setup.transform, size, &arena),
@@ -170,10 +170,10 @@ pub(super) struct Ladder<'f> {
     /// The cheapest arithmetic that is tried.
     lowest: Rung,
     bounded: Picture<'f, Bounded>,
-    /// Made in `late` when it is first needed.
+    /// Made in the memory of `threads` when it is first needed.
     double_double: OnceLock<Picture<'f, DoubleDouble>>,
     /// Memory for the parts that threads make.
-    late: &'f Herd,
+    threads: &'f Herd,
     /// Pictures that no thread is using. A thread that finds none makes one.
     arbitrary: Mutex<Vec<ArbitraryPicture<'f>>>,
     colors: Palette<'f>,
@@ -196,7 +196,10 @@ impl<'f> Ladder<'f> {
         lowest: Rung,
         arena: &'f Arena,
     ) -> Self {
-        let Arena { frame: arena, late } = arena;
+        let Arena {
+            setup: arena,
+            threads,
+        } = arena;
         let setup = FrameSetup::new(scene, stage, alpha, size, arena);
         Ladder {
             scene,
@@ -207,7 +210,7 @@ impl<'f> Ladder<'f> {
             bounded: setup.picture(scene, stage, &setup.transform, size, &arena),
             setup,
             double_double: OnceLock::new(),
-            late,
+            threads,
             arbitrary: Mutex::default(),
             colors: Palette::new(scene, arena),
         }
@@ -229,12 +232,12 @@ impl<'f> Ladder<'f> {
         }
         let double_double = self
             .double_double
-            .get_or_init(|| self.picture(&self.late.get()));
+            .get_or_init(|| self.picture(&self.threads.get()));
         if let Ok(answer) = question.answer(double_double) {
             return (answer, Rung::DoubleDouble);
         }
         let mut arbitrary = self.arbitrary().pop().unwrap_or_else(|| {
-            let (session, picture) = Session::begin(|| self.picture(&self.late.get()));
+            let (session, picture) = Session::begin(|| self.picture(&self.threads.get()));
             ArbitraryPicture { session, picture }
         });
         let Ok(answer) = arbitrary
@@ -258,13 +261,13 @@ impl<'f> Ladder<'f> {
     }
 
     /// The picture in any number.
-    pub(super) fn picture<'a, R: Real>(&self, room: &impl Room<'a>) -> Picture<'a, R>
+    pub(super) fn picture<'a, R: Real>(&self, allocator: &impl SliceAllocator<'a>) -> Picture<'a, R>
     where
         'f: 'a,
     {
         let transform = transform(self.alpha, self.size);
         self.setup
-            .picture(self.scene, self.stage, &transform, self.size, room)
+            .picture(self.scene, self.stage, &transform, self.size, allocator)
     }
 }
 

@@ -5,7 +5,7 @@ use std::iter;
 
 use glam::DVec3;
 
-use super::arena::Room;
+use super::arena::SliceAllocator;
 use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
 use super::line::{Hit, Line, Normal};
@@ -108,7 +108,7 @@ impl<'f, R: Real> Picture<'f, R> {
         size: u32,
         signs: &FrameSigns<'_>,
         extents: &Extents<'f>,
-        room: &impl Room<'f>,
+        allocator: &impl SliceAllocator<'f>,
     ) -> Self {
         let seen = extents.surface.as_ref().zip(extents.casters_on_surface);
         let surface = match (scene.surface(), transform.surface(scene), seen) {
@@ -119,7 +119,7 @@ impl<'f, R: Real> Picture<'f, R> {
                     casters,
                     color: Vector::exact(described.color),
                     mirror: signs.mirrored.as_ref().map(|signs| Mirror {
-                        view: View::new(scene, transform, signs, extents.mirrored, true, room),
+                        view: View::new(scene, transform, signs, extents.mirrored, true, allocator),
                         reflectance: R::exact(described.reflectance),
                     }),
                 })
@@ -131,7 +131,14 @@ impl<'f, R: Real> Picture<'f, R> {
             stage,
             size,
             transform: *transform,
-            view: View::new(scene, transform, &signs.direct, extents.direct, false, room),
+            view: View::new(
+                scene,
+                transform,
+                &signs.direct,
+                extents.direct,
+                false,
+                allocator,
+            ),
             surface,
         }
     }

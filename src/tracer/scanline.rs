@@ -141,7 +141,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let color = |decision| pixels.color(decision);
         RowTracer {
             pixels,
-            frame: Prepared::new(pixels.bounded(), &color, cull_from, level, &arena.frame),
+            frame: Prepared::new(pixels.bounded(), &color, cull_from, level, &arena.setup),
             level,
             precision,
         }

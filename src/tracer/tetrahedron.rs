@@ -367,7 +367,7 @@ mod tests {
             for mirrored in [false, true] {
                 let transform = |(sin, cos)| ViewTransform::<DoubleDouble>::new(sin, cos, 500);
                 let transform = transform(DoubleDouble::sin_cos(alpha));
-                let mirror = transform.mirror(&scene).filter(|_| mirrored);
+                let mirror = transform.surface_height(&scene).filter(|_| mirrored);
                 let truth = transform
                     .tetrahedron(&scene, 0, mirror)
                     .face_signs(&looking());

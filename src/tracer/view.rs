@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 use bumpalo::Bump;
 
-use super::arena::Room;
+use super::arena::SliceAllocator;
 use super::extent::ExtentsOfSolids;
 use super::line::{Hit, Line};
 use super::shading::{Shading, halfway};
@@ -31,14 +31,14 @@ impl<R: Real> ViewTransform<R> {
         mirrored: bool,
         arena: &'f Bump,
     ) -> Result<ViewSigns<'f>, R::Doubt> {
-        let mirror = self.mirror(scene).filter(|_| mirrored);
+        let mirror_height = self.surface_height(scene).filter(|_| mirrored);
         let looking_in_scene = plain.looking_in_scene(mirrored);
         let solids = scene.tetrahedra().iter().zip(&scene.facts().right_handed);
         let face_signs = solids.enumerate().map(|(index, (solid, &right_handed))| {
             match certain_face_signs(&solid.vertices, right_handed, looking_in_scene) {
                 Some(signs) => Ok(signs),
                 None => self
-                    .tetrahedron(scene, index, mirror)
+                    .tetrahedron(scene, index, mirror_height)
                     .face_signs(&looking()),
             }
         });
@@ -181,9 +181,9 @@ impl<'f, R: Real> View<'f, R> {
         signs: &ViewSigns<'_>,
         extents: ExtentsOfSolids<'f>,
         mirrored: bool,
-        room: &impl Room<'f>,
+        allocator: &impl SliceAllocator<'f>,
     ) -> Self {
-        let mirror = transform.mirror(scene).filter(|_| mirrored);
+        let mirror_height = transform.surface_height(scene).filter(|_| mirrored);
         let to_light = transform.direction_to_light(scene, mirrored);
         let halfway = match signs.halfway {
             Halfway::None => None,
@@ -203,7 +203,7 @@ impl<'f, R: Real> View<'f, R> {
                 .iter()
                 .zip(&scene.facts().spheres)
                 .map(|(sphere, &support)| Sphere {
-                    center: reflect(transform.point(sphere.center), mirror),
+                    center: reflect(transform.point(sphere.center), mirror_height),
                     radius: R::exact(sphere.radius) * transform.scale,
                     support,
                 });
@@ -212,7 +212,7 @@ impl<'f, R: Real> View<'f, R> {
             .iter()
             .enumerate()
             .map(|(index, &face_signs)| {
-                let solid = transform.tetrahedron(scene, index, mirror);
+                let solid = transform.tetrahedron(scene, index, mirror_height);
                 let from_eye = solid.edge_functions(&looking(), face_signs);
                 let along_light = solid.edge_functions_to_light(&to_light);
                 TetrahedronInView {
@@ -223,8 +223,8 @@ impl<'f, R: Real> View<'f, R> {
             });
         View {
             extents,
-            spheres: room.lay(spheres),
-            tetrahedra: room.lay(tetrahedra),
+            spheres: allocator.slice_of(spheres),
+            tetrahedra: allocator.slice_of(tetrahedra),
             shading: Shading::new(scene, to_light, halfway),
         }
     }

@@ -83,7 +83,7 @@ impl<R: Real> ViewTransform<R> {
     }
 
     /// The height of the surface's plane in view space, if there is one.
-    pub(super) fn mirror(&self, scene: &Scene) -> Option<R> {
+    pub(super) fn surface_height(&self, scene: &Scene) -> Option<R> {
         scene
             .surface()
             .map(|surface| R::exact(surface.height) * self.scale)
@@ -108,7 +108,7 @@ impl<R: Real> ViewTransform<R> {
     pub(super) fn surface(&self, scene: &Scene) -> Option<Surface<R>> {
         let surface = scene.surface()?;
         Some(Surface {
-            height: self.mirror(scene)?,
+            height: self.surface_height(scene)?,
             height_in_pixels: R::exact(surface.height) * R::exact(self.half),
             half_width: R::exact(surface.half_width) * self.scale,
             sin: self.sin,
@@ -117,19 +117,19 @@ impl<R: Real> ViewTransform<R> {
         })
     }
 
-    /// A tetrahedron in view space, reflected in the plane of height `mirror`.
+    /// A tetrahedron in view space, reflected in the plane of height `mirror_height`.
     pub(super) fn tetrahedron(
         &self,
         scene: &Scene,
         index: usize,
-        mirror: Option<R>,
+        mirror_height: Option<R>,
     ) -> Tetrahedron<R> {
         let (tetrahedron, facts) = (&scene.tetrahedra()[index], scene.facts());
         let vertices = tetrahedron
             .vertices
-            .map(|vertex| reflect(self.point(vertex), mirror));
+            .map(|vertex| reflect(self.point(vertex), mirror_height));
         // A reflection turns a right hand into a left one.
-        let right_handed = facts.right_handed[index] != mirror.is_some();
+        let right_handed = facts.right_handed[index] != mirror_height.is_some();
         Tetrahedron::new(
             vertices,
             right_handed,
@@ -173,9 +173,9 @@ pub(super) fn from_middle(number: u32, half: f64) -> f64 {
     f64::from(number) - half
 }
 
-/// The reflection in the horizontal plane of height `mirror`, if there is one.
-pub(super) fn reflect<R: Real>(point: Vector<R>, mirror: Option<R>) -> Vector<R> {
-    match mirror {
+/// The reflection in the horizontal plane of height `mirror_height`, if there is one.
+pub(super) fn reflect<R: Real>(point: Vector<R>, mirror_height: Option<R>) -> Vector<R> {
+    match mirror_height {
         Some(height) => Vector::new(point.x, height + height - point.y, point.z),
         None => point,
     }

@@ -281,7 +281,7 @@ fn check_view(
 fn check_frame(scene: &Scene, alpha: f64, found: &mut Found) {
     let arena = Arena::default();
     let ladder = Ladder::new(scene, Stage::Animation, alpha, SIZE, Rung::Hardware, &arena);
-    let truth = ladder.picture::<DoubleDouble>(&&arena.frame);
+    let truth = ladder.picture::<DoubleDouble>(&&arena.setup);
     let (bounded, truth) = (ladder.bounded(), &truth);
     let one = (Bounded::exact(1.0), DoubleDouble::exact(1.0));
     check_view(

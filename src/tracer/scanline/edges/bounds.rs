@@ -174,9 +174,9 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
         );
         let scene = Scene::from_toml(&text).unwrap();
         let alpha = numbers(1, 3.0)[0];
-        let (arena, room) = (Arena::default(), Bump::new());
+        let (arena, allocator) = (Arena::default(), Bump::new());
         let ladder = Ladder::new(&scene, Stage::Shading, alpha, SIZE, Rung::Hardware, &arena);
-        let truth = ladder.picture::<DoubleDouble>(&&room);
+        let truth = ladder.picture::<DoubleDouble>(&&allocator);
         check_spheres(ladder.bounded(), &truth, grid, &mut shares);
         check_tetrahedra(ladder.bounded(), &truth, grid, &mut shares);
     }
