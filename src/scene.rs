@@ -7,11 +7,11 @@
 mod bounding_ball;
 mod builder;
 mod casters;
+mod enclosed;
 mod error;
 mod exact;
 mod faces;
 mod file;
-mod hidden;
 mod rational;
 mod rules;
 mod solid;

@@ -26,7 +26,7 @@ impl Casters {
         spheres: &[Sphere],
         tetrahedra: &[Tetrahedron],
         to_light: DVec3,
-        hidden: &[bool],
+        enclosed: &[bool],
         facing_light: &[[Ordering; 4]],
     ) -> Self {
         let bounds = bounding_balls(spheres, tetrahedra);
@@ -48,7 +48,7 @@ impl Casters {
             on_faces: vec![Default::default(); tetrahedra.len()],
         };
         each_overlapping_pair(&bounds, l.any_orthonormal_vector(), |a, b| {
-            if hidden[a] || hidden[b] {
+            if enclosed[a] || enclosed[b] {
                 return;
             }
             let BoundingBall { center, radius } = bounds[a];
@@ -271,7 +271,7 @@ impl SurfaceCasters {
         tetrahedra: &[Tetrahedron],
         surface: &Surface,
         to_light: DVec3,
-        hidden: &[bool],
+        enclosed: &[bool],
     ) -> Self {
         let Surface {
             height, half_width, ..
@@ -307,7 +307,7 @@ impl SurfaceCasters {
         for (solid, ball) in bounds
             .iter()
             .enumerate()
-            .filter(|(solid, _)| !hidden[*solid])
+            .filter(|(solid, _)| !enclosed[*solid])
         {
             if let Some((columns, rows)) = cells(ball)
                 && !columns.is_empty()

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::casters::{Casters, SurfaceCasters};
-use super::hidden::hidden;
+use super::enclosed::enclosed;
 use super::rational::{Plane, cross, dot, exact, minus, sign};
 use super::{Sphere, Surface, Tetrahedron};
 
@@ -43,7 +43,7 @@ pub(crate) struct Facts {
     pub(crate) sides: Vec<Side>,
     /// For each solid, spheres first, whether it lies inside of another. Then neither the solid nor
     /// its shadow is seen in stages where all solids take part.
-    pub(crate) hidden: Vec<bool>,
+    pub(crate) enclosed: Vec<bool>,
     /// The solids that may stand between a point of another one and the light.
     pub(crate) casters: Casters,
     /// The solids that may stand between a point of the surface and the light.
@@ -111,9 +111,10 @@ impl Facts {
                 of_surface(&|surface| side_of_tetrahedron(tetrahedron, surface))
             }))
             .collect();
-        let hidden = hidden(spheres, tetrahedra);
-        let surface_casters = surface
-            .map(|surface| SurfaceCasters::new(spheres, tetrahedra, surface, -direction, &hidden));
+        let enclosed = enclosed(spheres, tetrahedra);
+        let surface_casters = surface.map(|surface| {
+            SurfaceCasters::new(spheres, tetrahedra, surface, -direction, &enclosed)
+        });
 
         let mut same_spheres = HashMap::new();
         let sphere_supports = spheres.iter().map(|sphere| {
@@ -153,7 +154,7 @@ impl Facts {
                 .coefficients(),
             )
         });
-        let casters = Casters::new(spheres, tetrahedra, -direction, &hidden, &facing_light);
+        let casters = Casters::new(spheres, tetrahedra, -direction, &enclosed, &facing_light);
         Facts {
             spheres: sphere_supports,
             right_handed,
@@ -161,7 +162,7 @@ impl Facts {
             surface,
             facing_light,
             sides,
-            hidden,
+            enclosed,
             casters,
             surface_casters,
         }

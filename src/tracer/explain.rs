@@ -142,7 +142,7 @@ impl<R: Real> Picture<'_, R> {
                 self.explain_shadow(text, "the surface", &casters);
                 let mirrored_ray = Line {
                     origin: point,
-                    leaves: Some(surface.square.support),
+                    origin_support: Some(surface.square.support),
                     ..ray
                 };
                 if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {

@@ -12,7 +12,7 @@ pub(super) struct Line<R> {
     pub(super) origin: Vector<R>,
     pub(super) direction: Direction<R>,
     /// The sphere or plane on which a ray begins; the ray leaves it outward.
-    pub(super) leaves: Option<Support>,
+    pub(super) origin_support: Option<Support>,
 }
 
 /// The direction of a line, of any length but 0, with its squared length.

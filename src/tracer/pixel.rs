@@ -302,7 +302,7 @@ impl<'f, R: Real> Picture<'f, R> {
             let ray = Line {
                 origin: point,
                 direction: looking(),
-                leaves: Some(surface.square.support),
+                origin_support: Some(surface.square.support),
             };
             if let Some((solid, hit)) =
                 mirror

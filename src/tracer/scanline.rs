@@ -48,7 +48,7 @@
 //! A new kind of solid, such as a cylinder, would need
 //!
 //! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a bounding ball
-//!   (`bounding_ball`), a test whether it lies inside of others (`hidden`), what is exactly decided
+//!   (`bounding_ball`), a test whether it lies inside of others (`enclosed`), what is exactly decided
 //!   about it (`exact`), what may shade it (`casters`);
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view_space`,
 //!   `view`, `extent`, `pixel`, `palette`, `decision`, `explain`, `colors` and `mistaken` name every

@@ -76,7 +76,7 @@ impl<R: Real> Sphere<R> {
     /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line
     /// meets it, and the ray moves toward the centre.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        if ray.leaves == Some(self.support) {
+        if ray.origin_support == Some(self.support) {
             return Ok(false);
         }
         let approaches = || {

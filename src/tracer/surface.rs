@@ -67,15 +67,15 @@ impl<R: Real> Surface<R> {
     }
 
     /// The half-spaces whose intersection holds the square's shadow: all points whose ray in the
-    /// direction `to_light` meets the square. `climb` is the sign of the rise of that ray. The
-    /// half-spaces follow from [`Surface::is_ahead`], whose conditions are linear in the origin.
+    /// direction `to_light` meets the square. `rise` is the sign of that ray's rise. The half-spaces
+    /// follow from [`Surface::is_ahead`], whose conditions are linear in the origin.
     ///
-    /// Where `climb` is not 0, the intersection is the shadow. A level ray meets the square from
+    /// Where `rise` is not 0, the intersection is the shadow. A level ray meets the square from
     /// some points of its plane only, which the half-spaces do not tell from the others.
     pub(super) fn shadow(
         &self,
         to_light: Vector<R>,
-        climb: Ordering,
+        rise: Ordering,
     ) -> impl Iterator<Item = HalfSpace<R>> {
         let (zero, one) = (R::exact(0.0), R::exact(1.0));
         let up = Vector::new(zero, one, zero);
@@ -86,7 +86,7 @@ impl<R: Real> Surface<R> {
             closed,
             border: Some(self.support),
         };
-        let (bounds, sides) = match climb {
+        let (bounds, sides) = match rise {
             Ordering::Equal => ([Some(before(up, true)), Some(before(-up, true))], None),
             Ordering::Greater => ([Some(before(-up, false)), None], Some(to_light)),
             Ordering::Less => ([Some(before(up, false)), None], Some(-to_light)),
@@ -101,7 +101,7 @@ impl<R: Real> Surface<R> {
                 .into_iter()
                 .flat_map(|side| [side, -side])
                 .map(move |side| HalfSpace {
-                    // half − a(p), times |climb|, where p is moved along the light into the plane.
+                    // half − a(p), times |rise|, where p is moved along the light into the plane.
                     normal: up * side.dot(l) - side * l.y,
                     at: at + side * self.half_width,
                     closed: true,
@@ -114,27 +114,27 @@ impl<R: Real> Surface<R> {
     /// Whether the ray meets the square at some t > 0, from either side; one that lies in its
     /// plane, if it meets it there.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        let climb = ray.direction.vector.y;
-        let rise = self.height - ray.origin.y;
-        let toward = if ray.leaves == Some(self.support) {
+        let rise = ray.direction.vector.y;
+        let above = self.height - ray.origin.y;
+        let toward = if ray.origin_support == Some(self.support) {
             Ordering::Equal
         } else {
-            rise.sign()?
+            above.sign()?
         };
-        match (climb.sign()?, toward) {
+        match (rise.sign()?, toward) {
             (Ordering::Equal, Ordering::Equal) => self.is_ahead_in_plane(ray),
             (Ordering::Equal, _) | (_, Ordering::Equal) => Ok(false),
             (up, toward) if up == toward => {
-                // The point at t = rise/climb, times |climb|: no division, so that the border is as
+                // The point at t = above/rise, times |rise|: no division, so that the border is as
                 // sharp as can be.
-                let (climb, rise) = if up.is_gt() {
-                    (climb, rise)
+                let (rise, above) = if up.is_gt() {
+                    (rise, above)
                 } else {
-                    (-climb, -rise)
+                    (-rise, -above)
                 };
                 self.contains_scaled(
-                    ray.origin * climb + ray.direction.vector * rise,
-                    self.half_width * climb,
+                    ray.origin * rise + ray.direction.vector * above,
+                    self.half_width * rise,
                 )
             }
             _ => Ok(false),

@@ -46,7 +46,7 @@ impl<R: Real> HalfSpace<R> {
     /// Whether the line's origin is in the half-space. An origin on the border is recognised by its
     /// support, without any arithmetic.
     fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
-        if self.border.is_some() && self.border == line.leaves {
+        if self.border.is_some() && self.border == line.origin_support {
             return Ok(self.closed);
         }
         let sign = self.normal.dot(line.origin - self.at).sign()?;

@@ -142,8 +142,8 @@ pub(super) struct View<'f, R> {
 /// A tetrahedron with its edge functions for eye rays and for rays to the light.
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
-    pub(super) from_eye: EdgeFunctions<R>,
-    pub(super) to_light: EdgeFunctions<R>,
+    pub(super) eye_edges: EdgeFunctions<R>,
+    pub(super) light_edges: EdgeFunctions<R>,
 }
 
 /// Which kinds of solids take part in a stage.
@@ -213,12 +213,12 @@ impl<'f, R: Real> View<'f, R> {
             .enumerate()
             .map(|(index, &face_signs)| {
                 let solid = transform.tetrahedron(scene, index, mirror_height);
-                let from_eye = solid.edge_functions(&looking(), face_signs);
-                let along_light = solid.edge_functions_to_light(&to_light);
+                let eye_edges = solid.edge_functions(&looking(), face_signs);
+                let light_edges = solid.edge_functions_to_light(&to_light);
                 TetrahedronInView {
                     solid,
-                    from_eye,
-                    to_light: along_light,
+                    eye_edges,
+                    light_edges,
                 }
             });
         View {
@@ -313,10 +313,10 @@ impl<'f, R: Real> View<'f, R> {
             Solid::Sphere(sphere) if ahead && !sphere.is_ahead(ray)? => Ok(None),
             Solid::Sphere(sphere) => sphere.first_hit(ray),
             Solid::Tetrahedron(t) => {
-                if ahead && !t.solid.is_ahead(&t.from_eye, ray)? {
+                if ahead && !t.solid.is_ahead(&t.eye_edges, ray)? {
                     return Ok(None);
                 }
-                t.solid.first_hit(&t.from_eye, ray)
+                t.solid.first_hit(&t.eye_edges, ray)
             }
         }
     }
@@ -355,7 +355,7 @@ impl<'f, R: Real> View<'f, R> {
     pub(super) fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
         match self.solid(solid) {
             Solid::Sphere(sphere) => sphere.is_ahead(ray),
-            Solid::Tetrahedron(t) => t.solid.is_ahead(&t.to_light, ray),
+            Solid::Tetrahedron(t) => t.solid.is_ahead(&t.light_edges, ray),
         }
     }
 
@@ -367,11 +367,11 @@ impl<'f, R: Real> View<'f, R> {
     }
 
     /// The ray to the light from a point of the sphere or plane that it `leaves`.
-    pub(super) fn ray_to_light(&self, origin: Vector<R>, leaves: Support) -> Line<R> {
+    pub(super) fn ray_to_light(&self, origin: Vector<R>, support: Support) -> Line<R> {
         Line {
             origin,
             direction: self.shading.to_light,
-            leaves: Some(leaves),
+            origin_support: Some(support),
         }
     }
 }

@@ -62,7 +62,7 @@ impl<R: Real> ViewTransform<R> {
         Line {
             origin: Vector::new(origin[0], origin[1], origin[2]),
             direction: looking(),
-            leaves: None,
+            origin_support: None,
         }
     }
 

@@ -112,8 +112,8 @@ fn check_tetrahedra(
     for (t, exact) in bounded.view.tetrahedra.iter().zip(truth.view.tetrahedra) {
         let half_spaces = t
             .solid
-            .met(&t.from_eye)
-            .zip(exact.solid.met(&exact.from_eye));
+            .met(&t.eye_edges)
+            .zip(exact.solid.met(&exact.eye_edges));
         for (half_space, exact) in half_spaces {
             let half_plane = HalfPlane::of(&half_space, &screen, grid);
             for row in (0..SIZE).step_by(7) {
@@ -137,7 +137,7 @@ fn check_tetrahedra(
                 }
             }
         }
-        for face in t.from_eye.entered() {
+        for face in t.eye_edges.entered() {
             let (_, depth) = face_plane(t.solid.plane(face), grid);
             let plane = exact.solid.plane(face);
             for (column, row) in (0..SIZE)

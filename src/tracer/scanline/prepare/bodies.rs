@@ -188,7 +188,7 @@ impl<'p, 's> Bodies<'p, 's> {
         let screen = screen_plane(grid);
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
         let outline = solid.outline.half_planes();
-        let pairs = t.solid.entered_pairs(&t.from_eye);
+        let pairs = t.solid.entered_pairs(&t.eye_edges);
         let pairs = pairs.filter_map(|((i, j), first)| {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
             let crease = Region::new(crease, None, grid)

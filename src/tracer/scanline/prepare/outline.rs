@@ -65,7 +65,7 @@ impl<'f> Outlines<'f> {
             let is_seen = kinds.hold(&solid)
                 && area > 0
                 // From this stage on all solids take part, and a hidden one is never seen.
-                && !(facts.hidden[number] && stage >= Stage::Shading)
+                && !(facts.enclosed[number] && stage >= Stage::Shading)
                 // The surface mirrors nothing that is below.
                 && !(mirrored && side == Side::Below)
                 && within.is_none_or(|within| extent.meets(within));
@@ -87,9 +87,9 @@ impl<'f> Outlines<'f> {
                 }
                 Solid::Tetrahedron(t) => {
                     let screen = screen_plane(grid);
-                    let met = t.solid.met(&t.from_eye);
+                    let met = t.solid.met(&t.eye_edges);
                     let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));
-                    let faces = t.from_eye.entered();
+                    let faces = t.eye_edges.entered();
                     let front_faces =
                         faces.map(|face| (face, face_plane(t.solid.plane(face), grid)));
                     let mut depths = bumpalo::collections::Vec::<FaceDepth>::new_in(arena);

@@ -30,7 +30,7 @@ pub(crate) struct SurfaceShadow<'p> {
     sides: &'p [Side],
     to_light: Vector<Bounded>,
     /// The sign of the rise of `to_light`. In the mirror it is reversed.
-    climb: Ordering,
+    rise: Ordering,
     mirrored: bool,
 }
 
@@ -46,7 +46,7 @@ impl<'p> SurfaceShadow<'p> {
             surface: picture.surface.as_ref().map(|surface| &surface.square),
             sides: &picture.scene.facts().sides,
             to_light: view.shading.to_light.vector,
-            climb: rise.partial_cmp(&0.0).unwrap_or(Ordering::Equal),
+            rise: rise.partial_cmp(&0.0).unwrap_or(Ordering::Equal),
             mirrored,
         }
     }
@@ -56,11 +56,11 @@ impl<'p> SurfaceShadow<'p> {
         // A reflected solid is on the other side.
         let is_reached = match (self.sides[solid], self.mirrored) {
             (Side::Across, _) => true,
-            (Side::Above, false) | (Side::Below, true) => self.climb.is_le(),
-            (Side::Above, true) | (Side::Below, false) => self.climb.is_ge(),
+            (Side::Above, false) | (Side::Below, true) => self.rise.is_le(),
+            (Side::Above, true) | (Side::Below, false) => self.rise.is_ge(),
         };
         let surface = self.surface.filter(|_| is_reached)?;
-        Some(surface.shadow(self.to_light, self.climb))
+        Some(surface.shadow(self.to_light, self.rise))
     }
 
     /// The surface as a caster on a sphere.
@@ -73,7 +73,7 @@ impl<'p> SurfaceShadow<'p> {
     ) -> Option<Caster<'f>> {
         let forms = self.on(solid)?;
         let forms = forms.map(|half_space| row_sphere.inside(&half_space, lighting));
-        let unknown = self.climb.is_eq().then_some(LinearForm::UNKNOWN);
+        let unknown = self.rise.is_eq().then_some(LinearForm::UNKNOWN);
         Some(Caster::Polyhedron(collect(arena, forms.chain(unknown))))
     }
 
@@ -87,7 +87,7 @@ impl<'p> SurfaceShadow<'p> {
     ) -> Option<Region<'f>> {
         let planes = self.on(solid)?;
         let planes = planes.map(|half_space| HalfPlane::of(&half_space, plane, grid));
-        let unknown = self.climb.is_eq().then_some(HalfPlane::UNKNOWN);
+        let unknown = self.rise.is_eq().then_some(HalfPlane::UNKNOWN);
         Some(Region::new(
             collect(arena, planes.chain(unknown)),
             None,
@@ -128,9 +128,9 @@ pub(crate) fn shadows_on<'f>(
             Solid::Tetrahedron(t) => {
                 let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
                 let planes = if is_ahead {
-                    collect(arena, t.solid.met(&t.to_light).map(plane))
+                    collect(arena, t.solid.met(&t.light_edges).map(plane))
                 } else {
-                    collect(arena, t.solid.ahead(&t.to_light).map(plane))
+                    collect(arena, t.solid.ahead(&t.light_edges).map(plane))
                 };
                 Region::new(planes, None, grid)
             }
@@ -164,7 +164,7 @@ pub(crate) fn casters_on<'f>(
                 ))
             }
             Solid::Tetrahedron(t) => {
-                let ahead = t.solid.ahead(&t.to_light);
+                let ahead = t.solid.ahead(&t.light_edges);
                 let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }

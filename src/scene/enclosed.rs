@@ -15,10 +15,10 @@ use super::{FACES, Solid, Sphere, Tetrahedron};
 
 /// For each solid, spheres first, whether it lies inside of another, and is hidden also at points
 /// that both have in common.
-pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
+pub(super) fn enclosed(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool> {
     let balls = bounding_balls(spheres, tetrahedra);
     let solid = |number| Solid::numbered(number, spheres, tetrahedra);
-    let mut hidden = vec![false; balls.len()];
+    let mut enclosed = vec![false; balls.len()];
     each_overlapping_pair(&balls, DVec3::X, |a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
             let (small, large) = (&balls[inner], &balls[outer]);
@@ -29,12 +29,12 @@ pub(super) fn hidden(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bool
                 (Solid::Sphere(_), _) => distance + small.radius <= large.radius * MARGIN + slack,
                 (Solid::Tetrahedron(_), _) => distance <= large.radius * MARGIN + slack,
             };
-            if may && !hidden[inner] && !hidden[outer] {
-                hidden[inner] = is_inside(solid(inner), solid(outer), outer < inner);
+            if may && !enclosed[inner] && !enclosed[outer] {
+                enclosed[inner] = is_inside(solid(inner), solid(outer), outer < inner);
             }
         }
     });
-    hidden
+    enclosed
 }
 
 /// Whether a solid lies inside of another: in its interior or, if `closed`, also on its border.
