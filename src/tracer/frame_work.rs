@@ -33,7 +33,7 @@ pub(super) fn with_frame<W: FrameWork>(
 ) -> Result<W::Output, TraceError> {
     let ladder = |lowest| Ladder::new(scene, stage, alpha, size, lowest, arena);
     Ok(match kernel {
-        Kernel::Exact => work.by_rows(&ladder(Rung::Hardware), Precision::Bounded, arena),
+        Kernel::Exact => work.by_rows(&ladder(Rung::Hardware), Precision::Certified, arena),
         Kernel::Fast => {
             let plain = Plain::<f32>::new(scene, stage, alpha, size, arena);
             work.by_rows(&plain, Precision::Single, arena)

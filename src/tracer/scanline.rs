@@ -272,7 +272,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
                     shader.shade(row, columns, shaded, in_shadow, self.pixels);
                 }
             }
-            Shown::Unknown => row.decide(columns.0..columns.1, self.pixels),
+            Shown::InDoubt => row.decide(columns.0..columns.1, self.pixels),
         }
     }
 }

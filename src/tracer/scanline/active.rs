@@ -21,9 +21,9 @@ enum BandEdges {
     /// The region has no pixels in the band.
     None,
     /// Two edges a row: all possible columns of the region are certain.
-    Certain,
+    Two,
     /// Four edges a row: some columns of the region are only possible.
-    Uncertain,
+    Four,
 }
 
 /// An edge of a region, 4 · region + kind: the region begins possibly (0), begins certainly (1),
@@ -36,8 +36,8 @@ impl Edge {
     fn of(region: usize, band: BandEdges) -> impl Iterator<Item = Edge> {
         let kinds: &[u32] = match band {
             BandEdges::None => &[],
-            BandEdges::Certain => &[1, 3],
-            BandEdges::Uncertain => &[0, 1, 2, 3],
+            BandEdges::Two => &[1, 3],
+            BandEdges::Four => &[0, 1, 2, 3],
         };
         kinds.iter().map(move |kind| Edge(4 * region as u32 + kind))
     }
@@ -49,7 +49,7 @@ impl Edge {
     /// How the region covers the columns to the right of the edge.
     fn cover(self) -> Cover {
         match self.0 % 4 {
-            0 | 2 => Cover::Unknown,
+            0 | 2 => Cover::Possibly,
             1 => Cover::Certainly,
             _ => Cover::Not,
         }
@@ -343,9 +343,9 @@ impl ActiveEdges {
         let ([a, d], [b, c]) = (band.possible, band.certain);
         self.columns[4 * region..4 * region + 4].copy_from_slice(&[a, b, c, d]);
         if band.is_certain {
-            BandEdges::Certain
+            BandEdges::Two
         } else {
-            BandEdges::Uncertain
+            BandEdges::Four
         }
     }
 

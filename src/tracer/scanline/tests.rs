@@ -71,7 +71,7 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
             let name = text.lines().next().unwrap_or("built-in");
             // Every frame is culled, or none.
             for cull_from in [0, u64::MAX] {
-                let (precision, level) = (Precision::Bounded, Level::baseline());
+                let (precision, level) = (Precision::Certified, Level::baseline());
                 let tracer = RowTracer::culled_from(cull_from, &ladder, precision, level, &arena);
                 check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
             }
@@ -115,7 +115,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     let shown = |shown: Shown| match shown {
         Shown::Paint(paint) => format!("paint {}", paint.0),
         Shown::Sphere { mirrored, solid } => format!("sphere {} {mirrored}", solid.0),
-        Shown::Unknown => "unknown".to_owned(),
+        Shown::InDoubt => "unknown".to_owned(),
     };
     match visible {
         Visible::Only(only) => shown(only),
@@ -200,7 +200,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);
                         let is_right = match (shown, decision) {
-                            (Shown::Unknown, _) => {
+                            (Shown::InDoubt, _) => {
                                 in_doubt += 1;
                                 continue;
                             }

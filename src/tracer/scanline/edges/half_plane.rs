@@ -47,7 +47,7 @@ struct Root {
 
 impl HalfPlane {
     /// A half-plane of which every pixel is in doubt.
-    pub(crate) const UNKNOWN: HalfPlane = HalfPlane {
+    pub(crate) const IN_DOUBT: HalfPlane = HalfPlane {
         constant: Bounded::UNKNOWN,
         column: Bounded::UNKNOWN,
         row: Bounded::UNKNOWN,

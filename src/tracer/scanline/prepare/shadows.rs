@@ -73,8 +73,8 @@ impl<'p> SurfaceShadow<'p> {
     ) -> Option<Caster<'f>> {
         let forms = self.on(solid)?;
         let forms = forms.map(|half_space| row_sphere.inside(&half_space, lighting));
-        let unknown = self.rise.is_eq().then_some(LinearForm::UNKNOWN);
-        Some(Caster::Polyhedron(collect(arena, forms.chain(unknown))))
+        let in_doubt = self.rise.is_eq().then_some(LinearForm::IN_DOUBT);
+        Some(Caster::Polyhedron(collect(arena, forms.chain(in_doubt))))
     }
 
     /// The shadow as a region: the pixels whose points on a plane are in it.
@@ -87,9 +87,9 @@ impl<'p> SurfaceShadow<'p> {
     ) -> Option<Region<'f>> {
         let planes = self.on(solid)?;
         let planes = planes.map(|half_space| HalfPlane::of(&half_space, plane, grid));
-        let unknown = self.rise.is_eq().then_some(HalfPlane::UNKNOWN);
+        let in_doubt = self.rise.is_eq().then_some(HalfPlane::IN_DOUBT);
         Some(Region::new(
-            collect(arena, planes.chain(unknown)),
+            collect(arena, planes.chain(in_doubt)),
             None,
             grid,
         ))

@@ -18,7 +18,7 @@ pub(in crate::tracer) enum Precision {
     /// f64.
     Double,
     /// f64 with bounds on its errors; pixels in doubt are decided by themselves.
-    Bounded,
+    Certified,
 }
 
 /// A SIMD vector of a policy's floats.

@@ -112,13 +112,13 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         let all = u64::MAX >> (64 - here);
         let column = run.from + first as u32;
         let x = run.x(first, lanes);
-        let (mut in_shadow, mut unknown) = (0, 0);
+        let (mut in_shadow, mut in_doubt) = (0, 0);
         if tests_shadows {
             // The second vector of a short run may hold no pixel.
             for half in 0..here.div_ceil(lanes) {
                 let (dark, doubts) = shadowed(&row, shaded, run, x[half], now[half]);
                 in_shadow |= dark << (half * lanes);
-                unknown |= doubts << (half * lanes);
+                in_doubt |= doubts << (half * lanes);
             }
         }
         let bright = run.bright(first, width);
@@ -137,11 +137,11 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             }
             let (rounded, doubts) = P::round(lit_low, lit_high);
             store::<S>(samples, &rounded);
-            unknown = (unknown | doubts) & !in_shadow;
+            in_doubt = (in_doubt | doubts) & !in_shadow;
             run.darken(first..first + here, in_shadow);
         }
         run.decide(shaded, first..first + here, in_shadow);
-        let mut doubts = unknown & all;
+        let mut doubts = in_doubt & all;
         while doubts != 0 {
             // Both vectors may doubt a pixel in which they overlap.
             let doubt = column + doubts.trailing_zeros();

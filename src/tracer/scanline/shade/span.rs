@@ -103,7 +103,7 @@ impl SpanShader {
             scratch: &mut self.scratch,
         };
         dispatch!(row.level, simd => match row.precision {
-            Precision::Bounded => shade::<_, Certified>(simd, shaded, &mut run),
+            Precision::Certified => shade::<_, Certified>(simd, shaded, &mut run),
             Precision::Double => shade::<_, f64>(simd, shaded, &mut run),
             Precision::Single => shade::<_, f32>(simd, shaded, &mut run),
         });

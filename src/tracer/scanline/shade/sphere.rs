@@ -46,7 +46,7 @@ pub(crate) struct LinearForm {
 
 impl LinearForm {
     /// A form whose sign is always in doubt; shaders without bounds take it for negative.
-    pub(crate) const UNKNOWN: LinearForm = LinearForm {
+    pub(crate) const IN_DOUBT: LinearForm = LinearForm {
         constant: -1.0,
         q: 0.0,
         m: 0.0,

@@ -12,29 +12,29 @@ pub(crate) enum Cover {
     #[default]
     Not,
     Certainly,
-    Unknown,
+    Possibly,
 }
 
 /// How many regions of one kind cover the column.
 #[derive(Clone, Copy, Default)]
-struct Tally {
+struct CoverCount {
     certain: u32,
     /// How many more may cover it.
-    unknown: u32,
+    possible: u32,
 }
 
-impl Tally {
+impl CoverCount {
     fn add(&mut self, cover: Cover) {
         match cover {
             Cover::Not => {}
             Cover::Certainly => self.certain += 1,
-            Cover::Unknown => self.unknown += 1,
+            Cover::Possibly => self.possible += 1,
         }
     }
 
     /// Whether any of the regions covers the column; `None` where that is in doubt.
     fn any(self) -> Option<bool> {
-        (self.certain > 0 || self.unknown == 0).then_some(self.certain > 0)
+        (self.certain > 0 || self.possible == 0).then_some(self.certain > 0)
     }
 }
 
@@ -42,22 +42,22 @@ impl Tally {
 #[derive(Default)]
 pub(crate) struct CoveringSolids {
     solids: Vec<SolidIndex>,
-    tally: Tally,
+    count: CoverCount,
 }
 
 impl CoveringSolids {
     /// The solids, if none is in doubt.
     pub(crate) fn certain(&self) -> Option<&[SolidIndex]> {
-        (self.tally.unknown == 0).then_some(&self.solids)
+        (self.count.possible == 0).then_some(&self.solids)
     }
 
     fn clear(&mut self) {
         self.solids.clear();
-        self.tally = Tally::default();
+        self.count = CoverCount::default();
     }
 
     fn add(&mut self, solid: SolidIndex, cover: Cover) {
-        self.tally.add(cover);
+        self.count.add(cover);
         if cover == Cover::Certainly {
             self.solids.push(solid);
         }
@@ -75,9 +75,9 @@ pub(crate) struct Coverage {
     pub(crate) direct: CoveringSolids,
     /// Solids seen in the mirror.
     pub(crate) mirrored: CoveringSolids,
-    surface: Tally,
+    surface: CoverCount,
     /// The shadows on each receiver.
-    shadows: Vec<Tally>,
+    shadows: Vec<CoverCount>,
     /// The receivers whose entries in `shadows` are in use.
     receivers: Vec<Receiver>,
 }
@@ -89,7 +89,7 @@ impl Coverage {
         self.covers.resize(table.kinds.len(), Cover::Not);
         self.covering.clear();
         self.shadows.clear();
-        self.shadows.resize(table.receivers, Tally::default());
+        self.shadows.resize(table.receivers, CoverCount::default());
         self.receivers.clear();
     }
 
@@ -109,9 +109,9 @@ impl Coverage {
     pub(crate) fn look(&mut self, table: &EdgeTable<'_>) {
         self.direct.clear();
         self.mirrored.clear();
-        self.surface = Tally::default();
+        self.surface = CoverCount::default();
         for Receiver(number) in self.receivers.drain(..) {
-            self.shadows[number as usize] = Tally::default();
+            self.shadows[number as usize] = CoverCount::default();
         }
         for &region in &self.covering {
             let cover = self.covers[region];
@@ -145,7 +145,7 @@ impl Coverage {
         match self.covers[region] {
             Cover::Not => Some(false),
             Cover::Certainly => Some(true),
-            Cover::Unknown => None,
+            Cover::Possibly => None,
         }
     }
 }

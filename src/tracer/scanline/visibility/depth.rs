@@ -90,7 +90,7 @@ impl Settled {
             Front::Before(depth) => depth,
         };
         let Some(halves) = halves(columns) else {
-            return self.push(columns, Shown::Unknown);
+            return self.push(columns, Shown::InDoubt);
         };
         for i in first..end {
             let Near { index, lower } = self.near[i];

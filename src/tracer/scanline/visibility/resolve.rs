@@ -17,7 +17,7 @@ pub(crate) fn visible(
 ) -> Visible {
     let direct = frame.solids(false);
     let Some(met) = coverage.direct.certain() else {
-        return Visible::UNKNOWN;
+        return Visible::IN_DOUBT;
     };
     // A solid above the surface hides the surface.
     let hides = |&solid: &SolidIndex| direct.solid(solid).side == Side::Above;
@@ -28,7 +28,7 @@ pub(crate) fn visible(
     };
     let surface = match meets_surface {
         Some(meets_surface) => frame.surface.as_ref().filter(|_| meets_surface),
-        None => return Visible::UNKNOWN,
+        None => return Visible::IN_DOUBT,
     };
     match (met, surface) {
         ([], None) => Visible::Only(Shown::Paint(frame.background)),
@@ -58,12 +58,12 @@ fn visible_surface(
     let itself = Visible::Only(Shown::Paint(surface.paint));
     let mirrored = match (coverage.in_shadow(surface.shadows), &surface.mirrored) {
         (Some(true), _) => return Visible::Only(Shown::Paint(surface.in_shadow)),
-        (None, _) => return Visible::UNKNOWN,
+        (None, _) => return Visible::IN_DOUBT,
         (Some(false), None) => return itself,
         (Some(false), Some(mirrored)) => mirrored,
     };
     let Some(met) = coverage.mirrored.certain() else {
-        return Visible::UNKNOWN;
+        return Visible::IN_DOUBT;
     };
     if met.is_empty() {
         return itself;
@@ -97,7 +97,7 @@ fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) 
             let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.first));
             match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
                 Ok(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
-                Err(()) => (None, Shown::Unknown),
+                Err(()) => (None, Shown::InDoubt),
             }
         }
     };
@@ -116,6 +116,6 @@ fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
     match coverage.in_shadow(front_face.shadows) {
         Some(true) => Shown::Paint(front_face.in_shadow),
         Some(false) => Shown::Paint(front_face.lit),
-        None => Shown::Unknown,
+        None => Shown::InDoubt,
     }
 }

@@ -15,7 +15,7 @@ pub(crate) enum Shown {
         solid: SolidIndex,
     },
     /// Every pixel is decided by itself.
-    Unknown,
+    InDoubt,
 }
 
 /// What a gap shows.
@@ -28,7 +28,7 @@ pub(crate) enum Visible {
 }
 
 impl Visible {
-    pub(crate) const UNKNOWN: Visible = Visible::Only(Shown::Unknown);
+    pub(crate) const IN_DOUBT: Visible = Visible::Only(Shown::InDoubt);
 }
 
 /// What a gap shows, or that the gap is unresolved, in one word: two are compared without a branch.
@@ -40,7 +40,7 @@ impl Packed {
 
     pub(crate) fn new(visible: Visible) -> Packed {
         let (kind, number) = match visible {
-            Visible::Only(Shown::Unknown) => (1, 0),
+            Visible::Only(Shown::InDoubt) => (1, 0),
             Visible::Only(Shown::Paint(PaintNumber(number))) => (2, number),
             Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid.0),
             Visible::First(number) => (5, number),
@@ -66,7 +66,7 @@ impl Packed {
                 solid: SolidIndex(number),
             }),
             5 => Visible::First(number),
-            _ => Visible::UNKNOWN,
+            _ => Visible::IN_DOUBT,
         }
     }
 }
