@@ -22,8 +22,8 @@
 //! ```
 //!
 //! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that are not hidden
-//!   (`culling`), their colours (`bodies`) and shadows (`shadows`), and the surface (`surface`).
-//!   The result is plain data (`prepared`): regions and paints.
+//!   (`culling`), their colours (`appearance`) and shadows (`shadows`), and the surface (`surface`).
+//!   The result is plain data (`frame`): regions and paints.
 //! - `edges/` crosses regions with rows. Eye rays are parallel, and so are rays to the light: every
 //!   silhouette, edge of a face, outline of a shadow on a plane or of a mirror image is a straight
 //!   line or an ellipse. An edge is a root of its equation, enclosed by a bound on its error. So a
@@ -33,7 +33,7 @@
 //! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
 //!   mostly nothing but the columns of the edges has changed.
 //! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
-//!   by a separating plane (`separation`) or by a depth test (`depth`).
+//!   by a separating plane (`separation`) or by a depth test (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
 //!   bounds on its errors for the certified kernel and without for the others (`policy`). The
 //!   columns of a sphere that face the light, and those that may have a highlight, are found first
@@ -53,9 +53,10 @@
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view_space`,
 //!   `view`, `extent`, `pixel`, `palette`, `decision`, `explain`, `colors` and `mistaken` name every
 //!   kind of solid. Solids are numbered spheres first: look for `spheres.len()`;
-//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours (`prepare/solids`,
-//!   `prepare/bodies`, `visibility/resolve`, and `shade/` where they vary), shadows on planes and on
-//!   spheres (`prepare/shadows`, `shade/caster`), and separating planes (`visibility/separation`);
+//! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours
+//!   (`prepare/appearance`, `visibility/resolve`, and `shade/` where they vary), shadows on planes
+//!   and on spheres (`prepare/shadows`, `shade/caster`), and separating planes
+//!   (`visibility/separation`);
 //! - in `diagnosis`: what other tracers may get wrong about it (`hypotheses`); in the tests: the
 //!   oracle (`tests/oracle.rs`).
 //!
@@ -91,12 +92,12 @@ use super::tally::Tally;
 use active::ActiveEdges;
 use grid::Columns;
 pub(super) use grid::ROWS;
-use prepare::prepared::Prepared;
-use prepare::solids::Body;
+use prepare::frame::PreparedFrame;
+use prepare::solids::Appearance;
 pub(super) use shade::policy::Precision;
 use shade::span::SpanShader;
 use visibility::coverage::Coverage;
-use visibility::depth::Settled;
+use visibility::depth_test::DepthTester;
 use visibility::resolve::visible;
 use visibility::visible::{DepthTests, Shown, Visible};
 pub(super) use write::history::RowHistory;
@@ -110,7 +111,7 @@ const CULL_FROM: u64 = 4;
 pub(super) struct RowTracer<'f, P> {
     /// Decides the pixels that rows leave in doubt.
     pixels: &'f P,
-    frame: Prepared<'f>,
+    frame: PreparedFrame<'f>,
     level: Level,
     precision: Precision,
 }
@@ -120,7 +121,7 @@ pub(super) struct RowTracer<'f, P> {
 pub(super) struct Scratch {
     active: ActiveEdges,
     depth_tests: DepthTests,
-    settled: Settled,
+    depth_tester: DepthTester,
     shader: SpanShader,
 }
 
@@ -141,7 +142,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let color = |decision| pixels.color(decision);
         RowTracer {
             pixels,
-            frame: Prepared::new(pixels.bounded(), &color, cull_from, level, &arena.setup),
+            frame: PreparedFrame::new(pixels.bounded(), &color, cull_from, level, &arena.setup),
             level,
             precision,
         }
@@ -220,7 +221,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let Scratch {
             active,
             depth_tests,
-            settled,
+            depth_tester,
             shader,
         } = scratch;
         if depth_tests.is_full() {
@@ -246,7 +247,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
                 Visible::Only(shows) => self.write(row, (from, to), shows, shader),
                 Visible::First(_) => {
                     let columns = (from, to);
-                    let parts = settled.settle(frame, depth_tests, visible, row.y, columns);
+                    let parts = depth_tester.test(frame, depth_tests, visible, row.y, columns);
                     for (columns, shows) in parts {
                         self.write(row, columns, shows, shader);
                     }
@@ -267,7 +268,9 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         match shows {
             Shown::Paint(paint) => row.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
-                if let Body::Sphere(shaded) = &self.frame.solids(mirrored).solid(solid).body {
+                if let Appearance::Sphere(shaded) =
+                    &self.frame.solids(mirrored).solid(solid).appearance
+                {
                     let in_shadow = &self.frame.paints[shaded.in_shadow];
                     shader.shade(row, columns, shaded, in_shadow, self.pixels);
                 }

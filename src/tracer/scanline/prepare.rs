@@ -1,11 +1,11 @@
 //! Prepares a frame: its solids and its surface, with their regions and paints.
 
-pub(super) mod bodies;
+pub(super) mod appearance;
 pub(super) mod builder;
 pub(super) mod culling;
 pub(super) mod depth;
+pub(super) mod frame;
 pub(super) mod outline;
-pub(super) mod prepared;
 pub(super) mod shadows;
 pub(super) mod solids;
 pub(super) mod surface;

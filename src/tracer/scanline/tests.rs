@@ -5,9 +5,9 @@
 
 use fearless_simd::Level;
 
-use super::prepare::solids::Body;
+use super::prepare::solids::Appearance;
 use super::visibility::visible::{DepthTests, Shown, Visible};
-use super::{Precision, RowTracer, Scratch, Settled, visible};
+use super::{DepthTester, Precision, RowTracer, Scratch, visible};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
@@ -115,7 +115,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     let shown = |shown: Shown| match shown {
         Shown::Paint(paint) => format!("paint {}", paint.0),
         Shown::Sphere { mirrored, solid } => format!("sphere {} {mirrored}", solid.0),
-        Shown::InDoubt => "unknown".to_owned(),
+        Shown::InDoubt => "in doubt".to_owned(),
     };
     match visible {
         Visible::Only(only) => shown(only),
@@ -194,9 +194,11 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             let y = tracer.frame.grid.coordinate(row);
             let mut from = 0;
             for (to, visible) in spans(tracer, row, &mut scratch) {
-                let mut settled = Settled::default();
+                let mut depth_tester = DepthTester::default();
                 let (frame, tests) = (&tracer.frame, &scratch.depth_tests);
-                for ((first, end), shown) in settled.settle(frame, tests, visible, y, (from, to)) {
+                for ((first, end), shown) in
+                    depth_tester.test(frame, tests, visible, y, (from, to))
+                {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);
                         let is_right = match (shown, decision) {
@@ -211,8 +213,9 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                                 Shown::Sphere { mirrored, solid },
                                 Decision::Solid(_) | Decision::Mirrored(_),
                             ) => {
-                                let body = &tracer.frame.solids(mirrored).solid(solid).body;
-                                matches!(body, Body::Sphere(sphere) if sphere.lit == lit(decision))
+                                let appearance =
+                                    &tracer.frame.solids(mirrored).solid(solid).appearance;
+                                matches!(appearance, Appearance::Sphere(sphere) if sphere.lit == lit(decision))
                             }
                             (Shown::Sphere { .. }, _) => false,
                         };

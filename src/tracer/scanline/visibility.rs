@@ -2,7 +2,7 @@
 //! that are decided one by one.
 
 pub(super) mod coverage;
-pub(super) mod depth;
+pub(super) mod depth_test;
 pub(super) mod resolve;
 pub(super) mod separation;
 pub(super) mod visible;

@@ -26,11 +26,11 @@ pub(crate) struct PreparedSolid<'f> {
     /// The side of the surface that the solid is on.
     pub(crate) side: Side,
     pub(crate) depth: Depth<'f>,
-    pub(crate) body: Body<'f>,
+    pub(crate) appearance: Appearance<'f>,
 }
 
 /// How the pixels of a solid are coloured.
-pub(crate) enum Body<'f> {
+pub(crate) enum Appearance<'f> {
     /// All pixels show one paint.
     Flat(PaintNumber),
     /// The pixels of a sphere are shaded.

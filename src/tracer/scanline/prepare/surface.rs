@@ -14,7 +14,7 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind};
-use crate::tracer::scanline::prepare::bodies::with_bodies;
+use crate::tracer::scanline::prepare::appearance::prepare_solids;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
@@ -119,7 +119,7 @@ impl<'f> PreparedSurface<'f> {
         PreparedSurface {
             mirrored: mirror
                 .zip(mirrored)
-                .map(|(mirror, outlines)| with_bodies(picture, &mirror.view, outlines, parts)),
+                .map(|(mirror, outlines)| prepare_solids(picture, &mirror.view, outlines, parts)),
             depth,
             paint: parts.paints.of(Decision::Surface),
             in_shadow: parts.paints.of(Decision::SurfaceInShadow),

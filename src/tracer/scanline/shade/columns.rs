@@ -11,7 +11,7 @@
 //!
 //! So the columns in which f changes sign are guessed, by the roots of a quadratic equation. f is
 //! evaluated beside them, with its bound as in `shade/sphere.rs`. If the signs are certain there,
-//! they are certain in the whole row; if not, the row is left unsettled.
+//! they are certain in the whole row; if not, the row is left in doubt.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};

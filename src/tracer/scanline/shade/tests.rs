@@ -5,7 +5,7 @@ use fearless_simd::{Level, dispatch};
 use crate::tracer::decision::Decision;
 use crate::tracer::ladder::{Ladder, Pixels as _};
 use crate::tracer::scanline::RowTracer;
-use crate::tracer::scanline::prepare::solids::Body;
+use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
@@ -83,7 +83,7 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
                     continue;
                 }
                 for solid in solids.solids {
-                    if let Body::Sphere(shaded) = &solid.body {
+                    if let Appearance::Sphere(shaded) = &solid.appearance {
                         check(tracer, shaded, (level, name), &mut counts);
                     }
                 }

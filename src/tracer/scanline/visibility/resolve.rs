@@ -2,8 +2,8 @@
 
 use crate::scene::Side;
 use crate::tracer::scanline::edges::table::SolidIndex;
-use crate::tracer::scanline::prepare::prepared::Prepared;
-use crate::tracer::scanline::prepare::solids::{Body, FrontFace, PreparedSolids};
+use crate::tracer::scanline::prepare::frame::PreparedFrame;
+use crate::tracer::scanline::prepare::solids::{Appearance, FrontFace, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
@@ -11,7 +11,7 @@ use crate::tracer::tetrahedron::last_entered;
 
 /// What a gap with this coverage shows. If rows have to decide, a test is added to `depth_tests`.
 pub(crate) fn visible(
-    frame: &Prepared<'_>,
+    frame: &PreparedFrame<'_>,
     coverage: &Coverage,
     depth_tests: &mut DepthTests,
 ) -> Visible {
@@ -84,16 +84,16 @@ fn visible_surface(
 
 /// What a gap shows where a solid is in front.
 fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) -> Candidate {
-    let (front_face, shown) = match &view.solid(solid).body {
-        Body::Flat(paint) => (None, Shown::Paint(*paint)),
-        Body::Sphere(_) => {
+    let (front_face, shown) = match &view.solid(solid).appearance {
+        Appearance::Flat(paint) => (None, Shown::Paint(*paint)),
+        Appearance::Sphere(_) => {
             let shown = Shown::Sphere {
                 mirrored: view.mirrored,
                 solid,
             };
             (None, shown)
         }
-        Body::FrontFaces(front_faces, pairs) => {
+        Appearance::FrontFaces(front_faces, pairs) => {
             let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.first));
             match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
                 Ok(last) => (Some(last), front_face_in(&front_faces[last], coverage)),

@@ -7,14 +7,14 @@
 use crate::scene::Side;
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::prepare::depth::Rectangle;
-use crate::tracer::scanline::prepare::prepared::Prepared;
+use crate::tracer::scanline::prepare::frame::PreparedFrame;
 use crate::tracer::scanline::visibility::visible::{
     Candidate, DepthTest, DepthTests, Shown, Visible,
 };
 
-/// The parts of a span, each settled by the depth test, and memory that is kept from span to span.
+/// The parts of a span, each decided by the depth test, and memory that is kept from span to span.
 #[derive(Default)]
-pub(crate) struct Settled {
+pub(crate) struct DepthTester {
     parts: Vec<(Columns, Shown)>,
     /// A stack: for each halving that is under way, the solids that can be in front.
     near: Vec<Near>,
@@ -36,11 +36,11 @@ enum Front {
     Before(f64),
 }
 
-impl Settled {
+impl DepthTester {
     /// What a row shows in the columns of a span, from the left.
-    pub(crate) fn settle(
+    pub(crate) fn test(
         &mut self,
-        frame: &Prepared<'_>,
+        frame: &PreparedFrame<'_>,
         depth_tests: &DepthTests,
         visible: Visible,
         y: f64,
@@ -53,7 +53,7 @@ impl Settled {
 
     fn add(
         &mut self,
-        frame: &Prepared<'_>,
+        frame: &PreparedFrame<'_>,
         depth_tests: &DepthTests,
         visible: Visible,
         y: f64,
@@ -76,7 +76,7 @@ impl Settled {
     /// Settles columns by a test among the solids in `near` from number `first` on.
     fn add_first(
         &mut self,
-        frame: &Prepared<'_>,
+        frame: &PreparedFrame<'_>,
         tests: (&DepthTests, (&DepthTest, &[Candidate])),
         first: usize,
         y: f64,
@@ -114,7 +114,7 @@ impl Settled {
 
 /// What is in front in all these columns, among the solids `near`. Updates their lower bounds.
 fn front(
-    frame: &Prepared<'_>,
+    frame: &PreparedFrame<'_>,
     (test, candidates): (&DepthTest, &[Candidate]),
     near: &mut [Near],
     y: f64,

@@ -20,7 +20,7 @@ use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
 use crate::tracer::scanline::prepare::solids::{
-    Body, FrontFace, Pair, PreparedSolid, PreparedSolids,
+    Appearance, FrontFace, Pair, PreparedSolid, PreparedSolids,
 };
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
@@ -31,7 +31,7 @@ use crate::tracer::view::{TetrahedronInView, View};
 
 /// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
 /// the scene, or the one in the mirror.
-pub(crate) fn with_bodies<'f>(
+pub(crate) fn prepare_solids<'f>(
     picture: &Picture<'_, Bounded>,
     view: &View<'_, Bounded>,
     outlines: Outlines<'f>,
@@ -39,10 +39,10 @@ pub(crate) fn with_bodies<'f>(
 ) -> PreparedSolids<'f> {
     let (arena, mirrored) = (parts.arena, outlines.mirrored);
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
-    let bodies = Bodies::new(picture, view, mirrored);
+    let appearances = Appearances::new(picture, view, mirrored);
     let mut solids = Growing::with_capacity_in(numbers.len(), arena);
     for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
-        let body = bodies.of(&solid, parts);
+        let appearance = appearances.of(&solid, parts);
         let kind = if mirrored {
             RegionKind::Mirrored(index)
         } else {
@@ -52,7 +52,7 @@ pub(crate) fn with_bodies<'f>(
         solids.push(PreparedSolid {
             side: solid.side,
             depth: solid.depth,
-            body,
+            appearance,
         });
     }
     PreparedSolids {
@@ -62,8 +62,8 @@ pub(crate) fn with_bodies<'f>(
     }
 }
 
-/// Makes the bodies of a view's solids.
-struct Bodies<'p, 's> {
+/// Makes the appearances of a view's solids.
+struct Appearances<'p, 's> {
     picture: &'p Picture<'s, Bounded>,
     view: &'p View<'s, Bounded>,
     mirrored: bool,
@@ -74,9 +74,9 @@ struct Bodies<'p, 's> {
     lighting: OnceCell<Lighting>,
 }
 
-impl<'p, 's> Bodies<'p, 's> {
+impl<'p, 's> Appearances<'p, 's> {
     fn new(picture: &'p Picture<'s, Bounded>, view: &'p View<'s, Bounded>, mirrored: bool) -> Self {
-        Bodies {
+        Appearances {
             picture,
             view,
             mirrored,
@@ -86,14 +86,14 @@ impl<'p, 's> Bodies<'p, 's> {
         }
     }
 
-    /// The body of a solid, whose regions and paints are added.
-    fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Body<'f> {
+    /// The appearance of a solid, whose regions and paints are added.
+    fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Appearance<'f> {
         match (self.view.solid(solid.number), solid.outline.ellipse()) {
             (Solid::Sphere(sphere), Some(outline)) => {
                 self.sphere(solid.number, sphere, outline, parts)
             }
             // The outline of a sphere is an ellipse.
-            (Solid::Sphere(_), None) => Body::Flat(parts.paints.of(Decision::Background)),
+            (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.of(Decision::Background)),
             (Solid::Tetrahedron(t), _) => self.front_faces(solid, t, parts),
         }
     }
@@ -117,11 +117,11 @@ impl<'p, 's> Bodies<'p, 's> {
         sphere: &Sphere<Bounded>,
         outline: &Ellipse,
         parts: &mut Builder<'f, '_>,
-    ) -> Body<'f> {
+    ) -> Appearance<'f> {
         let arena = parts.arena;
         let mut paint = |in_shadow| parts.paints.of(self.decision(number, None, in_shadow));
         if self.picture.stage == Stage::Spheres {
-            return Body::Flat(paint(false));
+            return Appearance::Flat(paint(false));
         }
         let color = self.picture.solid_color(number);
         let color = if self.mirrored {
@@ -143,7 +143,7 @@ impl<'p, 's> Bodies<'p, 's> {
             &[]
         };
         parts.shaded_spheres += 1;
-        Body::Sphere(arena.alloc(ShadedSphere {
+        Appearance::Sphere(arena.alloc(ShadedSphere {
             number: parts.shaded_spheres - 1,
             sphere: row_sphere,
             casters,
@@ -157,7 +157,7 @@ impl<'p, 's> Bodies<'p, 's> {
         solid: &Outlined<'f>,
         t: &TetrahedronInView<Bounded>,
         parts: &mut Builder<'f, '_>,
-    ) -> Body<'f> {
+    ) -> Appearance<'f> {
         let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
         for (face, plane) in solid.front_faces {
@@ -200,7 +200,7 @@ impl<'p, 's> Bodies<'p, 's> {
             })
         });
         let pairs = collect(arena, pairs);
-        Body::FrontFaces(front_faces.into_bump_slice(), pairs)
+        Appearance::FrontFaces(front_faces.into_bump_slice(), pairs)
     }
 
     /// The shadows that may fall on a front face.

@@ -9,7 +9,7 @@ use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::table::{EdgeTable, EdgeTableBuilder};
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::scanline::prepare::bodies::with_bodies;
+use crate::tracer::scanline::prepare::appearance::prepare_solids;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
@@ -18,7 +18,7 @@ use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 
 /// A frame, prepared for its rows.
-pub(crate) struct Prepared<'f> {
+pub(crate) struct PreparedFrame<'f> {
     pub(crate) grid: Grid,
     pub(crate) edge_table: EdgeTable<'f>,
     pub(crate) paints: AllPaints<'f>,
@@ -32,7 +32,7 @@ pub(crate) struct Prepared<'f> {
     pub(crate) quadrants: Option<[PaintNumber; 4]>,
 }
 
-impl<'f> Prepared<'f> {
+impl<'f> PreparedFrame<'f> {
     /// `color` tells the colour of a decision. Frames with a mean of `cull_from` solids behind a
     /// pixel are culled.
     pub(crate) fn new(
@@ -61,10 +61,10 @@ impl<'f> Prepared<'f> {
         let surface = picture.surface.as_ref();
         let surface = surface
             .map(|surface| PreparedSurface::new(picture, surface, tiles.as_ref(), &mut parts));
-        let direct = with_bodies(picture, &picture.view, outlines, &mut parts);
+        let direct = prepare_solids(picture, &picture.view, outlines, &mut parts);
         let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
-        Prepared {
+        PreparedFrame {
             grid,
             edge_table: parts.edge_table.build(),
             paints: parts.paints.all(),
