@@ -100,9 +100,9 @@ use visibility::coverage::Coverage;
 use visibility::depth_test::DepthTester;
 use visibility::resolve::visible;
 use visibility::visible::{DepthTests, Shown, Visible};
+use write::band::BandWriter;
 pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
-use write::row::Row;
 
 /// The mean number of solids behind a pixel from which on culling pays.
 const CULL_FROM: u64 = 4;
@@ -169,7 +169,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch: &mut Scratch,
         progress: &Progress,
     ) -> Tally {
-        let mut row = Row {
+        let mut writer = BandWriter {
             level: self.level,
             precision: self.precision,
             grid: self.frame.grid,
@@ -187,36 +187,36 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             if progress.is_cancelled() {
                 break;
             }
-            row.number = number;
-            row.y = self.frame.grid.coordinate(number);
+            writer.number = number;
+            writer.y = self.frame.grid.coordinate(number);
             match &self.frame.quadrants {
-                Some(quadrants) => self.trace_quadrants(&mut row, quadrants),
-                None => self.trace_row(&mut row, scratch),
+                Some(quadrants) => self.trace_quadrants(&mut writer, quadrants),
+                None => self.trace_row(&mut writer, scratch),
             }
-            row.finish();
+            writer.finish();
             traced += 1;
             if traced == ROWS as u32 {
                 progress.add(std::mem::take(&mut traced));
             }
         }
         progress.add(traced);
-        row.finish_all()
+        writer.finish_all()
     }
 
     /// Code 2-1, in which the left half of a row shows one quadrant and the right half another.
-    fn trace_quadrants<'r>(&'r self, row: &mut Row<'r>, quadrants: &[PaintNumber; 4]) {
+    fn trace_quadrants<'r>(&'r self, writer: &mut BandWriter<'r>, quadrants: &[PaintNumber; 4]) {
         let size = self.frame.grid.size;
         let middle = (size / 2 + 1).min(size);
         for columns in [(0, middle), (middle, size)] {
             if columns.0 < columns.1 {
-                let paint = quadrants[usize::from(quadrant(columns.0, row.number, size))];
-                row.fill(columns, &self.frame.paints[paint]);
-                row.tally.spans += 1;
+                let paint = quadrants[usize::from(quadrant(columns.0, writer.number, size))];
+                writer.fill(columns, &self.frame.paints[paint]);
+                writer.tally.spans += 1;
             }
         }
     }
 
-    fn trace_row<'r>(&'r self, row: &mut Row<'r>, scratch: &mut Scratch) {
+    fn trace_row<'r>(&'r self, writer: &mut BandWriter<'r>, scratch: &mut Scratch) {
         let frame = &self.frame;
         let Scratch {
             active,
@@ -230,26 +230,26 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         }
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
         active.enter(
-            row.number,
+            writer.number,
             &frame.edge_table,
             self.level,
             frame.grid,
             resolve,
         );
-        row.tally.edges += active.edge_count() as u64;
-        row.tally.spans += active.len() as u64;
+        writer.tally.edges += active.edge_count() as u64;
+        writer.tally.spans += active.len() as u64;
         let mut from = 0;
         for span in 0..active.len() {
-            let (to, visible) = active.span(span, row.number);
+            let (to, visible) = active.span(span, writer.number);
             match visible {
                 // The span has no columns in this row, but may have some in the next.
                 _ if from == to => {}
-                Visible::Only(shows) => self.write(row, (from, to), shows, shader),
+                Visible::Only(shows) => self.write(writer, (from, to), shows, shader),
                 Visible::First(_) => {
                     let columns = (from, to);
-                    let parts = depth_tester.test(frame, depth_tests, visible, row.y, columns);
+                    let parts = depth_tester.test(frame, depth_tests, visible, writer.y, columns);
                     for (columns, shows) in parts {
-                        self.write(row, columns, shows, shader);
+                        self.write(writer, columns, shows, shader);
                     }
                 }
             }
@@ -260,22 +260,22 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     /// Writes columns that all show the same.
     fn write<'r>(
         &'r self,
-        row: &mut Row<'r>,
+        writer: &mut BandWriter<'r>,
         columns: Columns,
         shows: Shown,
         shader: &mut SpanShader,
     ) {
         match shows {
-            Shown::Paint(paint) => row.fill(columns, &self.frame.paints[paint]),
+            Shown::Paint(paint) => writer.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
                 if let Appearance::Sphere(shaded) =
                     &self.frame.solids(mirrored).solid(solid).appearance
                 {
                     let in_shadow = &self.frame.paints[shaded.in_shadow];
-                    shader.shade(row, columns, shaded, in_shadow, self.pixels);
+                    shader.shade(writer, columns, shaded, in_shadow, self.pixels);
                 }
             }
-            Shown::InDoubt => row.decide(columns.0..columns.1, self.pixels),
+            Shown::InDoubt => writer.decide(columns.0..columns.1, self.pixels),
         }
     }
 }

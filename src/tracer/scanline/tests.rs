@@ -196,8 +196,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut depth_tester = DepthTester::default();
                 let (frame, tests) = (&tracer.frame, &scratch.depth_tests);
-                for ((first, end), shown) in
-                    depth_tester.test(frame, tests, visible, y, (from, to))
+                for ((first, end), shown) in depth_tester.test(frame, tests, visible, y, (from, to))
                 {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);

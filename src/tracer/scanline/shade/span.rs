@@ -9,8 +9,8 @@ use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of
 use crate::tracer::scanline::shade::policy::{Certified, Precision};
 use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
+use crate::tracer::scanline::write::band::BandWriter;
 use crate::tracer::scanline::write::paint::Paint;
-use crate::tracer::scanline::write::row::Row;
 
 /// What the shading of spheres needs, kept from span to span.
 #[derive(Default)]
@@ -28,21 +28,23 @@ impl SpanShader {
     /// Writes columns that show a sphere; `in_shadow` is its paint in shadow.
     pub(crate) fn shade<'r>(
         &mut self,
-        row: &mut Row<'r>,
+        writer: &mut BandWriter<'r>,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         in_shadow: &'r Paint,
         pixels: &impl Pixels,
     ) {
-        let sphere = self.cache.of(shaded, row.number, row.level, row.grid);
+        let sphere = self
+            .cache
+            .of(shaded, writer.number, writer.level, writer.grid);
         let shadeable = both(columns, sphere.shadeable);
         self.scratch.doubts.extend(columns.0..shadeable.0);
         self.scratch.doubts.extend(shadeable.1..columns.1);
         match sphere.facing {
             _ if !shaded.sphere.shadows => {
-                self.shade_run(row, shadeable, shaded, (&sphere, true), in_shadow);
+                self.shade_run(writer, shadeable, shaded, (&sphere, true), in_shadow);
             }
-            None => self.shade_run(row, shadeable, shaded, (&sphere, false), in_shadow),
+            None => self.shade_run(writer, shadeable, shaded, (&sphere, false), in_shadow),
             Some((inside, inside_faces)) => {
                 let inside = both(shadeable, inside);
                 let parts = [
@@ -53,21 +55,21 @@ impl SpanShader {
                 for (columns, faces) in parts {
                     match faces {
                         _ if columns.0 == columns.1 => {}
-                        true => self.shade_run(row, columns, shaded, (&sphere, true), in_shadow),
-                        false => row.fill(columns, in_shadow),
+                        true => self.shade_run(writer, columns, shaded, (&sphere, true), in_shadow),
+                        false => writer.fill(columns, in_shadow),
                     }
                 }
             }
         }
         if !self.scratch.doubts.is_empty() {
-            row.decide(self.scratch.doubts.drain(..), pixels);
+            writer.decide(self.scratch.doubts.drain(..), pixels);
         }
     }
 
     /// Shades columns that are all shadeable.
     fn shade_run(
         &mut self,
-        row: &mut Row<'_>,
+        writer: &mut BandWriter<'_>,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         (sphere, is_facing): (&SphereColumns, bool),
@@ -76,33 +78,33 @@ impl SpanShader {
         if columns.0 == columns.1 {
             return;
         }
-        row.mark_written();
+        writer.mark_written();
         let casters_near = &mut self.scratch.casters;
         casters_near.clear();
         if sphere.casters != 0 {
-            let x = |column| row.grid.coordinate(column);
+            let x = |column| writer.grid.coordinate(column);
             let ends = (x(columns.0), x(columns.1 - 1));
-            let hits = shaded.sphere.hit_box(ends, (row.y, row.y));
+            let hits = shaded.sphere.hit_box(ends, (writer.y, writer.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
                 sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)
             });
             casters_near.extend(near.map(|(number, _)| number));
         }
-        let range = row.pixels(columns);
+        let range = writer.pixels(columns);
         let mut run = Run {
-            grid: row.grid,
-            y: row.y,
+            grid: writer.grid,
+            y: writer.y,
             from: columns.0,
             zones: sphere.zones,
             bright: sphere.bright,
             is_facing,
-            samples: &mut row.samples[3 * range.start..3 * range.end],
-            decisions: row.decisions.as_mut().map(|all| &mut all[range]),
+            samples: &mut writer.samples[3 * range.start..3 * range.end],
+            decisions: writer.decisions.as_mut().map(|all| &mut all[range]),
             in_shadow,
             scratch: &mut self.scratch,
         };
-        dispatch!(row.level, simd => match row.precision {
+        dispatch!(writer.level, simd => match writer.precision {
             Precision::Certified => shade::<_, Certified>(simd, shaded, &mut run),
             Precision::Double => shade::<_, f64>(simd, shaded, &mut run),
             Precision::Single => shade::<_, f32>(simd, shaded, &mut run),

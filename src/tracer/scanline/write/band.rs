@@ -1,4 +1,4 @@
-//! Rows that are being written.
+//! Writes the pixels of neighbouring rows.
 
 use std::ops::Range;
 
@@ -12,16 +12,16 @@ use crate::tracer::scanline::write::history::RowHistory;
 use crate::tracer::scanline::write::paint::{self, Paint};
 use crate::tracer::tally::Tally;
 
-/// A row that is being written, one of several neighbours.
-pub(crate) struct Row<'r> {
+/// Neighbouring rows, which are written one after the other.
+pub(crate) struct BandWriter<'r> {
     pub(crate) level: Level,
     pub(crate) precision: Precision,
     pub(crate) grid: Grid,
     /// The first of the rows.
     pub(crate) first: u32,
-    /// The number of this row.
+    /// The number of the row that is being written.
     pub(crate) number: u32,
-    /// Y.
+    /// Y of that row.
     pub(crate) y: f64,
     /// The samples of all rows.
     pub(crate) samples: &'r mut [f32],
@@ -34,7 +34,7 @@ pub(crate) struct Row<'r> {
     pub(crate) tally: Tally,
 }
 
-impl<'r> Row<'r> {
+impl<'r> BandWriter<'r> {
     /// The indices of columns of the row among the pixels of all rows.
     pub(crate) fn pixels(&self, (from, to): Columns) -> Range<usize> {
         let start = (self.number - self.first) as usize * self.grid.size as usize;
@@ -85,7 +85,7 @@ impl<'r> Row<'r> {
         }
     }
 
-    /// Records that samples of the row are written by other means than [`Row::fill`].
+    /// Records that samples of the row are written by other means than [`BandWriter::fill`].
     pub(crate) fn mark_written(&mut self) {
         if let Some(history) = self.history() {
             history.is_written = true;
