@@ -2,7 +2,7 @@
 //! of.
 
 #[cfg(test)]
-mod agreement;
+mod agreement_tests;
 mod bounded;
 mod double_double;
 mod error_free;

@@ -195,7 +195,7 @@ fn is_shaded(
     but: Option<usize>,
 ) -> Result<bool, Infallible> {
     for solid in 0..view.solid_count() {
-        if Some(solid) != but && view.is_ahead(solid, ray)? {
+        if Some(solid) != but && view.occludes_light(solid, ray)? {
             return Ok(true);
         }
     }

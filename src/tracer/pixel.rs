@@ -13,7 +13,7 @@ use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use super::view::{FrameSigns, SolidKinds, View};
-use super::view_space::{ViewTransform, looking};
+use super::view_space::{ViewTransform, eye_direction};
 use crate::number::{Real, all, any};
 use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
@@ -301,7 +301,7 @@ impl<'f, R: Real> Picture<'f, R> {
             // In the reflected scene, the mirrored ray is the continuation of the eye ray.
             let ray = Line {
                 origin: point,
-                direction: looking(),
+                direction: eye_direction(),
                 origin_support: Some(surface.square.support),
             };
             if let Some((solid, hit)) =

@@ -69,7 +69,7 @@
 
 mod active;
 #[cfg(test)]
-mod bounds;
+mod bounds_tests;
 mod edges;
 mod grid;
 mod prepare;

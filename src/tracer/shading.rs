@@ -111,10 +111,11 @@ impl<R: Real> Shading<R> {
     }
 }
 
-/// h = (v + l)/|v + l|, where `looking` is the direction of eye rays, the opposite of v; v + l is
-/// not 0.
-pub(super) fn halfway<R: Real>(looking: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
-    let v = -looking.vector.divided_by(looking.squared_length.sqrt());
+/// h = (v + l)/|v + l|, where v + l is not 0. `eye_direction` is that of eye rays, the opposite of v.
+pub(super) fn halfway<R: Real>(eye_direction: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
+    let v = -eye_direction
+        .vector
+        .divided_by(eye_direction.squared_length.sqrt());
     let sum = v + to_light.vector.divided_by(to_light.squared_length.sqrt());
     sum.divided_by(sum.length())
 }

@@ -340,7 +340,7 @@ mod tests {
     use crate::number::DoubleDouble;
     use crate::random::Random;
     use crate::scene::Scene;
-    use crate::tracer::view_space::{ViewTransform, looking};
+    use crate::tracer::view_space::{ViewTransform, eye_direction};
 
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
@@ -355,7 +355,7 @@ mod tests {
             let plain = ViewTransform::<f64>::new(sin, cos, 500);
             // In later rounds eye rays run nearly along an edge.
             let beside = 10_f64.powi(-round / 20);
-            let along = plain.looking_in_scene(round % 2 == 0) * 0.1;
+            let along = plain.eye_direction_in_scene(round % 2 == 0) * 0.1;
             let [a, b, c] = [(); 3].map(|()| vector(1.0));
             let vertices = [a, b, c, a + along + vector(beside)].map(|v| v.to_array());
             let text = format!(
@@ -370,8 +370,8 @@ mod tests {
                 let mirror = transform.surface_height(&scene).filter(|_| mirrored);
                 let truth = transform
                     .tetrahedron(&scene, 0, mirror)
-                    .face_signs(&looking());
-                let d = plain.looking_in_scene(mirrored);
+                    .face_signs(&eye_direction());
+                let d = plain.eye_direction_in_scene(mirrored);
                 let right_handed = scene.facts().right_handed[0];
                 if let Some(signs) = certain_face_signs(&solid.vertices, right_handed, d) {
                     assert_eq!(

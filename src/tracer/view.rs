@@ -17,7 +17,7 @@ use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
 use super::tetrahedron::{EdgeFunctions, Tetrahedron, certain_face_signs};
 use super::vector::Vector;
-use super::view_space::{ViewTransform, looking, reflect};
+use super::view_space::{ViewTransform, eye_direction, reflect};
 use crate::number::{Bounded, DoubleDouble, Real, all, any};
 use crate::scene::{Scene, Solid, Support};
 use crate::stage::Stage;
@@ -32,17 +32,17 @@ impl<R: Real> ViewTransform<R> {
         arena: &'f Bump,
     ) -> Result<ViewSigns<'f>, R::Doubt> {
         let mirror_height = self.surface_height(scene).filter(|_| mirrored);
-        let looking_in_scene = plain.looking_in_scene(mirrored);
+        let eye_direction_in_scene = plain.eye_direction_in_scene(mirrored);
         let solids = scene.tetrahedra().iter().zip(&scene.facts().right_handed);
         let face_signs = solids.enumerate().map(|(index, (solid, &right_handed))| {
-            match certain_face_signs(&solid.vertices, right_handed, looking_in_scene) {
+            match certain_face_signs(&solid.vertices, right_handed, eye_direction_in_scene) {
                 Some(signs) => Ok(signs),
                 None => self
                     .tetrahedron(scene, index, mirror_height)
-                    .face_signs(&looking()),
+                    .face_signs(&eye_direction()),
             }
         });
-        let eye = looking::<R>().vector;
+        let eye = eye_direction::<R>().vector;
         let to_light = self.direction_to_light(scene, mirrored).vector;
         let across = eye.cross(to_light);
         let beside = [across.x, across.y, across.z];
@@ -188,14 +188,14 @@ impl<'f, R: Real> View<'f, R> {
         let halfway = match signs.halfway {
             Halfway::None => None,
             Halfway::Given(given) => {
-                let own = halfway(&looking(), &to_light);
+                let own = halfway(&eye_direction(), &to_light);
                 Some(Vector::new(
                     own.x.or_better(given.x),
                     own.y.or_better(given.y),
                     own.z.or_better(given.z),
                 ))
             }
-            Halfway::Computed => Some(halfway(&looking(), &to_light)),
+            Halfway::Computed => Some(halfway(&eye_direction(), &to_light)),
         };
         let spheres =
             scene
@@ -213,7 +213,7 @@ impl<'f, R: Real> View<'f, R> {
             .enumerate()
             .map(|(index, &face_signs)| {
                 let solid = transform.tetrahedron(scene, index, mirror_height);
-                let eye_edges = solid.edge_functions(&looking(), face_signs);
+                let eye_edges = solid.edge_functions(&eye_direction(), face_signs);
                 let light_edges = solid.edge_functions_to_light(&to_light);
                 TetrahedronInView {
                     solid,
@@ -343,7 +343,7 @@ impl<'f, R: Real> View<'f, R> {
     pub(super) fn casters(&self, ray: &Line<R>) -> Result<Vec<usize>, R::Doubt> {
         let mut all = Vec::new();
         for solid in 0..self.solid_count() {
-            if self.is_ahead(solid, ray)? {
+            if self.occludes_light(solid, ray)? {
                 all.push(solid);
             }
         }
@@ -352,7 +352,7 @@ impl<'f, R: Real> View<'f, R> {
 
     /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the
     /// light.
-    pub(super) fn is_ahead(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
+    pub(super) fn occludes_light(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
         match self.solid(solid) {
             Solid::Sphere(sphere) => sphere.is_ahead(ray),
             Solid::Tetrahedron(t) => t.solid.is_ahead(&t.light_edges, ray),
@@ -363,7 +363,7 @@ impl<'f, R: Real> View<'f, R> {
     pub(super) fn is_shadowed_by(&self, casters: &[u16], ray: &Line<R>) -> Result<bool, R::Doubt> {
         any(casters
             .iter()
-            .map(|caster| self.is_ahead(usize::from(*caster), ray)))
+            .map(|caster| self.occludes_light(usize::from(*caster), ray)))
     }
 
     /// The ray to the light from a point of the sphere or plane that it `leaves`.

@@ -61,7 +61,7 @@ impl<R: Real> ViewTransform<R> {
         let origin = [x, y, PIXEL * self.half].map(R::exact);
         Line {
             origin: Vector::new(origin[0], origin[1], origin[2]),
-            direction: looking(),
+            direction: eye_direction(),
             origin_support: None,
         }
     }
@@ -155,13 +155,13 @@ impl<R: Real> ViewTransform<R> {
 
     /// h, where v + l is not 0.
     pub(super) fn halfway(&self, scene: &Scene, mirrored: bool) -> Vector<R> {
-        halfway(&looking(), &self.direction_to_light(scene, mirrored))
+        halfway(&eye_direction(), &self.direction_to_light(scene, mirrored))
     }
 }
 
 impl ViewTransform<f64> {
     /// The direction of eye rays in the scene's own axes; of mirrored rays, reflected back.
-    pub(super) fn looking_in_scene(&self, mirrored: bool) -> DVec3 {
+    pub(super) fn eye_direction_in_scene(&self, mirrored: bool) -> DVec3 {
         let y = if mirrored { EYE_Y } else { -EYE_Y };
         DVec3::new(-EYE_Z * self.sin, y, -EYE_Z * self.cos)
     }
@@ -182,7 +182,7 @@ pub(super) fn reflect<R: Real>(point: Vector<R>, mirror_height: Option<R>) -> Ve
 }
 
 /// The direction of every eye ray: −10 w, of length √109.
-pub(super) fn looking<R: Real>() -> Direction<R> {
+pub(super) fn eye_direction<R: Real>() -> Direction<R> {
     let vector = Vector::new(R::exact(0.0), R::exact(-EYE_Y), R::exact(-EYE_Z));
     Direction {
         vector,

@@ -2,7 +2,7 @@
 
 pub(super) mod band_columns;
 #[cfg(test)]
-mod bounds;
+mod bounds_tests;
 pub(super) mod ellipse;
 pub(super) mod enclosure;
 pub(super) mod half_plane;

@@ -24,7 +24,7 @@ use crate::tracer::scanline::prepare::solids::{
 };
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::scanline::shade::sphere::SphereConstants;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::view::{TetrahedronInView, View};
@@ -93,7 +93,7 @@ impl<'p, 's> Appearances<'p, 's> {
                 self.sphere(solid.number, sphere, outline, parts)
             }
             // The outline of a sphere is an ellipse.
-            (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.of(Decision::Background)),
+            (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
             (Solid::Tetrahedron(t), _) => self.front_faces(solid, t, parts),
         }
     }
@@ -119,7 +119,7 @@ impl<'p, 's> Appearances<'p, 's> {
         parts: &mut Builder<'f, '_>,
     ) -> Appearance<'f> {
         let arena = parts.arena;
-        let mut paint = |in_shadow| parts.paints.of(self.decision(number, None, in_shadow));
+        let mut paint = |in_shadow| parts.paints.add(self.decision(number, None, in_shadow));
         if self.picture.stage == Stage::Spheres {
             return Appearance::Flat(paint(false));
         }
@@ -132,12 +132,12 @@ impl<'p, 's> Appearances<'p, 's> {
         let lighting = self
             .lighting
             .get_or_init(|| Lighting::new(&self.view.shading));
-        let row_sphere = RowSphere::new(sphere, outline, lighting, color, self.shadows);
+        let constants = SphereConstants::new(sphere, outline, lighting, color, self.shadows);
         let casters = if self.shadows {
             let facts = self.picture.scene.facts();
             let solids = facts.casters.on(number, None);
-            let solids = casters_on(&row_sphere, number, self.view, lighting, solids, arena);
-            let surface = self.surface.on_sphere(number, &row_sphere, lighting, arena);
+            let solids = casters_on(&constants, number, self.view, lighting, solids, arena);
+            let surface = self.surface.on_sphere(number, &constants, lighting, arena);
             collect(arena, solids.chain(surface))
         } else {
             &[]
@@ -145,7 +145,7 @@ impl<'p, 's> Appearances<'p, 's> {
         parts.shaded_spheres += 1;
         Appearance::Sphere(arena.alloc(ShadedSphere {
             number: parts.shaded_spheres - 1,
-            sphere: row_sphere,
+            constants,
             casters,
             lit: self.decision(number, None, false),
             in_shadow: paint(self.shadows),
@@ -169,7 +169,7 @@ impl<'p, 's> Appearances<'p, 's> {
             };
             let mut paint = |in_shadow| {
                 let decision = self.decision(solid.number, Some(*face), in_shadow);
-                parts.paints.of(decision)
+                parts.paints.add(decision)
             };
             let in_shadow = paint(self.shadows);
             front_faces.push(FrontFace {

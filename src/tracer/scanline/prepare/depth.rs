@@ -8,7 +8,7 @@ use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
-use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, looking};
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, eye_direction};
 
 /// The parameter at which eye rays enter a solid.
 pub(crate) enum Depth<'f> {
@@ -168,7 +168,7 @@ pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
 /// The points at which eye rays meet the plane of a face, and the parameters there.
 pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, FaceDepth) {
     let eye = screen_plane(grid);
-    let d = looking::<Bounded>().vector;
+    let d = eye_direction::<Bounded>().vector;
     // t = −n·(o − a)/(n·d), linear in o.
     let n_dot_d = face.normal.dot(d);
     let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / n_dot_d);

@@ -50,7 +50,7 @@ impl<'f> PreparedFrame<'f> {
             paints: Paints::new(color, arena),
             shaded_spheres: 0,
         };
-        let background = parts.paints.of(Decision::Background);
+        let background = parts.paints.add(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
         let is_crowded = outlines.depth_complexity(grid) >= cull_from;
         let tiles = is_crowded.then(|| {
@@ -62,7 +62,7 @@ impl<'f> PreparedFrame<'f> {
         let surface = surface
             .map(|surface| PreparedSurface::new(picture, surface, tiles.as_ref(), &mut parts));
         let direct = prepare_solids(picture, &picture.view, outlines, &mut parts);
-        let quadrant = |number| parts.paints.of(Decision::Quadrant(number));
+        let quadrant = |number| parts.paints.add(Decision::Quadrant(number));
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         PreparedFrame {
             grid,

@@ -16,7 +16,7 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
-use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants};
 use crate::tracer::surface::Surface;
 use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
@@ -67,12 +67,12 @@ impl<'p> SurfaceShadow<'p> {
     pub(crate) fn on_sphere<'f>(
         &self,
         solid: usize,
-        row_sphere: &RowSphere,
+        constants: &SphereConstants,
         lighting: &Lighting,
         arena: &'f Bump,
     ) -> Option<Caster<'f>> {
         let forms = self.on(solid)?;
-        let forms = forms.map(|half_space| row_sphere.inside(&half_space, lighting));
+        let forms = forms.map(|half_space| constants.inside(&half_space, lighting));
         let in_doubt = self.rise.is_eq().then_some(LinearForm::IN_DOUBT);
         Some(Caster::Polyhedron(collect(arena, forms.chain(in_doubt))))
     }
@@ -141,7 +141,7 @@ pub(crate) fn shadows_on<'f>(
 
 /// The casters of a sphere.
 pub(crate) fn casters_on<'f>(
-    row_sphere: &RowSphere,
+    constants: &SphereConstants,
     index: usize,
     view: &View<'_, Bounded>,
     lighting: &Lighting,
@@ -150,14 +150,14 @@ pub(crate) fn casters_on<'f>(
 ) -> impl Iterator<Item = Caster<'f>> {
     let to_light = view.shading.to_light;
     let support = view.spheres[index].support;
-    let own = LazyCell::new(|| row_sphere.own_moment(lighting));
+    let own = LazyCell::new(|| constants.own_moment(lighting));
     casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
         match view.solid(caster) {
             // No sphere shadows itself, nor a sphere that is listed twice.
             Solid::Sphere(sphere) if sphere.support == support => None,
             Solid::Sphere(sphere) => {
-                let (moment, before) = row_sphere.moment(sphere.center, &to_light, &own);
+                let (moment, before) = constants.moment(sphere.center, &to_light, &own);
                 let limit = to_light.squared_length * sphere.radius.squared();
                 Some(Caster::Sphere(
                     arena.alloc(ShadowCylinder::new(before, moment, limit)),
@@ -165,7 +165,7 @@ pub(crate) fn casters_on<'f>(
             }
             Solid::Tetrahedron(t) => {
                 let ahead = t.solid.ahead(&t.light_edges);
-                let forms = ahead.map(|half_space| row_sphere.inside(&half_space, lighting));
+                let forms = ahead.map(|half_space| constants.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }

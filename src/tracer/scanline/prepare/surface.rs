@@ -121,8 +121,8 @@ impl<'f> PreparedSurface<'f> {
                 .zip(mirrored)
                 .map(|(mirror, outlines)| prepare_solids(picture, &mirror.view, outlines, parts)),
             depth,
-            paint: parts.paints.of(Decision::Surface),
-            in_shadow: parts.paints.of(Decision::SurfaceInShadow),
+            paint: parts.paints.add(Decision::Surface),
+            in_shadow: parts.paints.add(Decision::SurfaceInShadow),
             shadows,
         }
     }

@@ -19,7 +19,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::number::rounding::U;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets, store_columns};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, ZONES};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
 use crate::tracer::view_space::PIXEL;
 
 /// Rounding moves a root by less than so many columns, or else the guess is rejected.
@@ -55,7 +55,7 @@ struct Arcs {
     inside: Intervals,
     is_concave: bool,
     /// A bit for each row: whether `inside` is certain.
-    settled: u64,
+    certain: u64,
 }
 
 /// The columns of a sphere in a row, as in [`SphereBand`].
@@ -97,7 +97,7 @@ impl SphereCache {
         level: Level,
         grid: Grid,
     ) -> SphereColumns {
-        let (number, sphere) = (shaded.number, &shaded.sphere);
+        let (number, sphere) = (shaded.number, &shaded.constants);
         let within = row % ROWS as u32;
         let first = row - within;
         if self.first[number] != Some(first) {
@@ -117,14 +117,14 @@ impl SphereBand {
         let Arcs {
             inside,
             is_concave,
-            settled,
+            certain,
         } = &self.facing;
         SphereColumns {
             shadeable: of(&self.shadeable),
             zones: [of(&self.zones[0]), of(&self.zones[1])],
             bright: of(&self.bright),
             casters: self.casters,
-            facing: (settled >> row & 1 == 1).then(|| (of(inside), *is_concave)),
+            facing: (certain >> row & 1 == 1).then(|| (of(inside), *is_concave)),
         }
     }
 
@@ -143,7 +143,7 @@ impl SphereBand {
         let end = to[rows].iter().fold(0, |a, &b| a.max(b));
         let columns = (grid.coordinate(begin), grid.coordinate(end - 1));
         let row = |row: usize| grid.coordinate(first + row as u32);
-        let hits = shaded.sphere.hit_box(columns, (row(low), row(high)));
+        let hits = shaded.constants.hit_box(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
         let near = casters.filter(|(_, caster)| !caster.misses(&hits));
         near.fold(0, |all, (number, _)| all | bit_of(number))
@@ -151,14 +151,20 @@ impl SphereBand {
 
     /// Computes all but the casters, for the rows from `first` on.
     #[inline(always)]
-    pub(crate) fn find<S: Simd>(&mut self, simd: S, sphere: &RowSphere, first: u32, grid: Grid) {
+    pub(crate) fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        sphere: &SphereConstants,
+        first: u32,
+        grid: Grid,
+    ) {
         self.facing.is_concave = sphere.light.is_concave == Some(true);
-        self.facing.settled = 0;
+        self.facing.certain = 0;
         self.bright = Intervals::default();
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
             let y = offsets::<S>(simd, lane) + grid.coordinate(first);
             let m = sphere.m.of_rows::<S>(y);
-            let rows = InRows {
+            let rows = RowLanes {
                 simd,
                 sphere,
                 grid,
@@ -171,9 +177,9 @@ impl SphereBand {
             store::<S>(rows.chord(innermost), &mut self.zones[0], lane);
             store::<S>(rows.chord(inner), &mut self.zones[1], lane);
             if sphere.shadows {
-                let (inside, settled) = rows.arc(&sphere.light, 0.0, shadeable);
+                let (inside, certain) = rows.arc(&sphere.light, 0.0, shadeable);
                 store::<S>(inside, &mut self.facing.inside, lane);
-                self.facing.settled |= settled.to_bitmask() << lane;
+                self.facing.certain |= certain.to_bitmask() << lane;
             }
             if let Some(highlight) = &sphere.highlight {
                 // |n − h| is no less than its component along the axis of m.
@@ -181,10 +187,10 @@ impl SphereBand {
                     .abs()
                     .simd_le(highlight.max_distance);
                 if is_near.any_true() {
-                    let (inside, settled) = rows.arc(&highlight.form, sphere.threshold, shadeable);
+                    let (inside, certain) = rows.arc(&highlight.form, sphere.threshold, shadeable);
                     let mut bright = shadeable;
                     if highlight.form.is_concave == Some(true) {
-                        bright = select::<S>(settled, inside, shadeable);
+                        bright = select::<S>(certain, inside, shadeable);
                     }
                     let none = [S::f64s::splat(simd, 0.0); 2];
                     let bright = select::<S>(is_near, bright, none);
@@ -196,9 +202,9 @@ impl SphereBand {
 }
 
 /// A sphere in as many rows as there are lanes.
-struct InRows<'b, S: Simd> {
+struct RowLanes<'b, S: Simd> {
     simd: S,
-    sphere: &'b RowSphere,
+    sphere: &'b SphereConstants,
     grid: Grid,
     /// m of each row.
     m: S::f64s,
@@ -222,7 +228,7 @@ fn store<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
 
 // No closures below: see `shade/run.rs`.
 
-impl<S: Simd> InRows<'_, S> {
+impl<S: Simd> RowLanes<'_, S> {
     /// q in a column of each row.
     #[inline(always)]
     fn q(&self, column: S::f64s) -> S::f64s {
@@ -322,9 +328,9 @@ impl<S: Simd> InRows<'_, S> {
         let rises = (top - one).simd_le(first) | (begin - before).simd_gt(4.0 * error);
         let falls = (top + one + one).simd_ge(last) | (finish - after).simd_gt(4.0 * error);
         let none_in = is_out & begin.simd_lt(-error) & finish.simd_lt(-error) & rises & falls;
-        let settled = (is_none & none_in) | (!is_none & is_in & begins & ends) | first.simd_ge(end);
+        let certain = (is_none & none_in) | (!is_none & is_in & begins & ends) | first.simd_ge(end);
         let from = is_none.select(first, from);
         let to = is_none.select(first, to);
-        ([from, to], settled)
+        ([from, to], certain)
     }
 }

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
 use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, Samples};
-use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere, SphereHighlight};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight};
 
 // No closures below: see `shade/run.rs`.
 
@@ -18,20 +18,20 @@ pub(crate) struct Hits<V> {
 }
 
 /// A sphere in a row, in the arithmetic of a policy.
-pub(crate) struct SphereInRow<'s, S: Simd, P: Policy<S>> {
+pub(crate) struct RowShader<'s, S: Simd, P: Policy<S>> {
     simd: S,
-    sphere: &'s RowSphere,
+    sphere: &'s SphereConstants,
     /// m of the row.
     m: f64,
     /// R² − m².
     squared: LaneVector<S, P>,
 }
 
-impl<'s, S: Simd, P: Policy<S>> SphereInRow<'s, S, P> {
+impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, sphere: &'s RowSphere, y: f64) -> Self {
+    pub(crate) fn new(simd: S, sphere: &'s SphereConstants, y: f64) -> Self {
         let m = sphere.m.at(y);
-        SphereInRow {
+        RowShader {
             simd,
             sphere,
             m,

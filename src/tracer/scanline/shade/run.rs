@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::grid::{Columns, Grid};
-use crate::tracer::scanline::shade::equation::SphereInRow;
+use crate::tracer::scanline::shade::equation::RowShader;
 use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
@@ -76,7 +76,7 @@ impl Run<'_> {
 
     /// Writes the decisions of pixels, whose bits in `in_shadow` tell which are dark.
     #[inline(always)]
-    fn decide(&mut self, shaded: &ShadedSphere<'_>, pixels: Range<usize>, in_shadow: u64) {
+    fn write_decisions(&mut self, shaded: &ShadedSphere<'_>, pixels: Range<usize>, in_shadow: u64) {
         if let Some(decisions) = &mut self.decisions {
             for (i, decision) in decisions[pixels].iter_mut().enumerate() {
                 *decision = if in_shadow >> i & 1 == 1 {
@@ -94,7 +94,7 @@ impl Run<'_> {
 pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, run: &mut Run<'_>) {
     // Each turn writes the pixels of one vector of f32s, which are those of two vectors of f64s.
     let (width, lanes) = (S::f32s::LEN, LaneVector::<S, P>::LEN);
-    let row = SphereInRow::<S, P>::new(simd, &shaded.sphere, run.y);
+    let row = RowShader::<S, P>::new(simd, &shaded.constants, run.y);
     let tests_shadows = !run.is_facing || !run.scratch.casters.is_empty();
     let count = run.samples.len() / 3;
     let last = count.saturating_sub(width);
@@ -140,7 +140,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             in_doubt = (in_doubt | doubts) & !in_shadow;
             run.darken(first..first + here, in_shadow);
         }
-        run.decide(shaded, first..first + here, in_shadow);
+        run.write_decisions(shaded, first..first + here, in_shadow);
         let mut doubts = in_doubt & all;
         while doubts != 0 {
             // Both vectors may doubt a pixel in which they overlap.
@@ -159,7 +159,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
 /// `light` is their n·l.
 #[inline(always)]
 fn shadowed<S: Simd, P: Policy<S>>(
-    row: &SphereInRow<'_, S, P>,
+    row: &RowShader<'_, S, P>,
     shaded: &ShadedSphere<'_>,
     run: &Run<'_>,
     x: f64,
@@ -167,7 +167,7 @@ fn shadowed<S: Simd, P: Policy<S>>(
 ) -> (u64, u64) {
     let (mut dark, mut lit) = (row.mask(false), row.mask(true));
     if !run.is_facing {
-        (dark, lit) = P::is_inside(-light, shaded.sphere.light.error);
+        (dark, lit) = P::is_inside(-light, shaded.constants.light.error);
     }
     if !run.scratch.casters.is_empty() {
         let hits = row.hits(x);

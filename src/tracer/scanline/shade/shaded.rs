@@ -2,14 +2,14 @@
 
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::shade::caster::Caster;
-use crate::tracer::scanline::shade::sphere::RowSphere;
+use crate::tracer::scanline::shade::sphere::SphereConstants;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
 /// A sphere that is shaded, with its casters and its colours.
 pub(crate) struct ShadedSphere<'f> {
     /// Its number among the shaded spheres of the frame.
     pub(crate) number: usize,
-    pub(crate) sphere: RowSphere,
+    pub(crate) constants: SphereConstants,
     pub(crate) casters: &'f [Caster<'f>],
     /// The decision of its pixels in the light.
     pub(crate) lit: Decision,

@@ -41,7 +41,7 @@ impl SpanShader {
         self.scratch.doubts.extend(columns.0..shadeable.0);
         self.scratch.doubts.extend(shadeable.1..columns.1);
         match sphere.facing {
-            _ if !shaded.sphere.shadows => {
+            _ if !shaded.constants.shadows => {
                 self.shade_run(writer, shadeable, shaded, (&sphere, true), in_shadow);
             }
             None => self.shade_run(writer, shadeable, shaded, (&sphere, false), in_shadow),
@@ -84,7 +84,7 @@ impl SpanShader {
         if sphere.casters != 0 {
             let x = |column| writer.grid.coordinate(column);
             let ends = (x(columns.0), x(columns.1 - 1));
-            let hits = shaded.sphere.hit_box(ends, (writer.y, writer.y));
+            let hits = shaded.constants.hit_box(ends, (writer.y, writer.y));
             let casters = shaded.casters.iter().enumerate();
             let near = casters.filter(|(number, caster)| {
                 sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)

@@ -165,10 +165,11 @@ impl HitBounds {
         highlight: &Highlight,
         radius: Bounded,
     ) -> SphereHighlight {
-        // Y = |D|²/2 with D = (q, m, s)/R − h. Let ε be the error of D without the rounding of its
-        // differences, which is less than u of D. Then the error of Y is at most |D| |ε| + |ε|² +
-        // 16u Y. |D| is bounded by (δ + 2Y/δ)/2, which is linear in Y, for any δ, and equal to it
-        // where δ² = 2Y: δ is chosen where the highlight is steepest, 1/√n.
+        // 1 − n·h is computed as Y = |D|²/2, where D = n − h = (q, m, s)/R − h. Let ε be the error of
+        // D without the rounding of its three differences, which is less than u of D. Then the error
+        // of Y is at most |D| |ε| + |ε|² + 16u Y. |D| = √(2Y) is at most (δ + 2Y/δ)/2 for any δ > 0,
+        // which is linear in Y, and equal to |D| where δ² = 2Y. δ = 1/√n, where the highlight is
+        // steepest.
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         // No component of n is more than 1. 1/R and the product with it round.
@@ -202,8 +203,8 @@ impl HitBounds {
     }
 }
 
-/// A sphere whose pixels are to be shaded.
-pub(crate) struct RowSphere {
+/// What the shading of a sphere depends on and all of its pixels share.
+pub(crate) struct SphereConstants {
     /// c_x.
     pub(crate) center_x: f64,
     /// R².
@@ -244,7 +245,7 @@ pub(crate) struct Coefficients {
 /// that begins with any channel.
 pub(crate) type Cycle = [f64; 8 + 2];
 
-impl RowSphere {
+impl SphereConstants {
     /// `color` is the sphere's colour, in the mirror times the reflectance.
     pub(crate) fn new(
         sphere: &Sphere<Bounded>,
@@ -252,7 +253,7 @@ impl RowSphere {
         lighting: &Lighting,
         color: Vector<Bounded>,
         shadows: bool,
-    ) -> RowSphere {
+    ) -> SphereConstants {
         let radius = sphere.radius.at_most() * INFLATION;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
         let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * INFLATION;
@@ -312,7 +313,7 @@ impl RowSphere {
             channel(color.z, blue),
         ];
         let cycle = |part: usize| std::array::from_fn(|sample| channels[sample % 3][part]);
-        RowSphere {
+        SphereConstants {
             center_x: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
             m: outline.m,
@@ -366,7 +367,7 @@ impl RowSphere {
     }
 
     /// The components of n × l, and −n·l, with n of the radius's length: the parts of
-    /// [`RowSphere::moment`] that are the same for all casters.
+    /// [`SphereConstants::moment`] that are the same for all casters.
     pub(crate) fn own_moment(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
         let moment = lighting.moment.map(|factors| self.bounds.form(factors));
         (moment, self.bounds.form(lighting.before))

@@ -14,7 +14,7 @@ use crate::tracer::extent::Entry;
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
-use crate::tracer::view_space::looking;
+use crate::tracer::view_space::eye_direction;
 
 /// The largest number of solids for which all pairs are tested in every frame.
 const MOST: usize = 16;
@@ -79,7 +79,7 @@ fn is_in_front(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<bool> {
         _ => apart_by_face(view, i, j)
             .or_else(|| apart_by_face(view, j, i).map(|direction| -direction)),
     }?;
-    let d_toward_j = looking::<Bounded>().vector.dot(toward_j);
+    let d_toward_j = eye_direction::<Bounded>().vector.dot(toward_j);
     // No ray parallel to the plane meets both.
     d_toward_j.sign().ok().map(|sign| sign.is_gt())
 }

@@ -61,7 +61,7 @@ impl<'f, 'c> Paints<'f, 'c> {
         }
     }
 
-    pub(crate) fn of(&mut self, decision: Decision) -> PaintNumber {
+    pub(crate) fn add(&mut self, decision: Decision) -> PaintNumber {
         self.all.push(Paint::new(decision, (self.color)(decision)));
         PaintNumber(self.all.len() as u32 - 1)
     }

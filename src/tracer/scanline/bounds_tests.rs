@@ -15,10 +15,10 @@ use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
-use crate::tracer::scanline::shade::equation::SphereInRow;
+use crate::tracer::scanline::shade::equation::RowShader;
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::sphere::{LinearForm, RowSphere};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
@@ -155,7 +155,7 @@ struct Case<'c> {
     view: &'c View<'c, DoubleDouble>,
     sphere: &'c Sphere<DoubleDouble>,
     color: Vector<DoubleDouble>,
-    row_sphere: RowSphere,
+    constants: SphereConstants,
     grid: Grid,
     /// Another sphere's centre.
     other: Vector<DoubleDouble>,
@@ -166,18 +166,18 @@ struct Case<'c> {
 impl Case<'_> {
     #[inline(always)]
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
-        let row_sphere = &self.row_sphere;
+        let constants = &self.constants;
         let y = self.grid.coordinate(row);
-        let m = row_sphere.m.at(y);
-        let in_row = SphereInRow::<S, Certified>::new(simd, row_sphere, y);
+        let m = constants.m.at(y);
+        let in_row = RowShader::<S, Certified>::new(simd, constants, y);
         let (below, within) = (row - row % ROWS as u32, row as usize % ROWS);
         let mut cache = SphereBand::default();
-        cache.find(simd, row_sphere, below, self.grid);
+        cache.find(simd, constants, below, self.grid);
         let columns = cache.row(within);
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.grid.coordinate(first);
             let hits = in_row.hits(x);
-            let facing = in_row.value(&row_sphere.light, &hits);
+            let facing = in_row.value(&constants.light, &hits);
             let zones = [0, 1, 2].map(|zone| {
                 let ambient = in_row.ambient(zone);
                 in_row.lit(x, facing, &ambient, (zone, u64::MAX))
@@ -185,11 +185,11 @@ impl Case<'_> {
             let forms = self.forms.map(|form| in_row.value(&form, &hits));
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
-                let squared = row_sphere.squared_radius - m * m - q * q;
-                if squared < row_sphere.min_squares[2] {
+                let squared = constants.squared_radius - m * m - q * q;
+                if squared < constants.min_squares[2] {
                     continue;
                 }
-                let min_squares = row_sphere.min_squares.iter();
+                let min_squares = constants.min_squares.iter();
                 let zone = min_squares.take_while(|least| squared < **least).count();
                 let samples = zones[zone];
                 let line = self.picture.transform.eye_ray(first + lane as u32, row);
@@ -199,14 +199,14 @@ impl Case<'_> {
                 let computed = facing.as_slice()[lane];
                 found
                     .light
-                    .note(terms.normal_light, computed, row_sphere.light.error);
+                    .note(terms.normal_light, computed, constants.light.error);
 
                 let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
                 let facing = terms.normal_light.to_f64();
                 let column = first + lane as u32;
                 found
                     .cache
-                    .note(&columns, column, facing, halfway, row_sphere.threshold);
+                    .note(&columns, column, facing, halfway, constants.threshold);
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);
@@ -254,17 +254,17 @@ fn check_view(
         let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
         let color = bounded.0.solid_color(index) * bounded.2;
         let lighting = Lighting::new(&view.shading);
-        let row_sphere = RowSphere::new(sphere, &outline, &lighting, color, true);
+        let constants = SphereConstants::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
         let to_light = &view.shading.to_light;
-        let own = row_sphere.own_moment(&lighting);
-        let ([x, y, z], before) = row_sphere.moment(view.spheres[other].center, to_light, &own);
+        let own = constants.own_moment(&lighting);
+        let ([x, y, z], before) = constants.moment(view.spheres[other].center, to_light, &own);
         let case = Case {
             picture: truth.0,
             view: true_view,
             sphere: &true_view.spheres[index],
             color: truth.0.solid_color(index) * truth.2,
-            row_sphere,
+            constants,
             grid,
             other: true_view.spheres[other].center,
             forms: [x, y, z, before],
