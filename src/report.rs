@@ -141,7 +141,7 @@ pub struct Report {
     /// How the picture was filled, with one thread and with the most, for people.
     fills: Vec<String>,
     /// Each kernel on each scene in each stage.
-    rows: Vec<Row>,
+    rows: Vec<KernelRow>,
     /// Each other renderer on each scene in each stage.
     renderers: Vec<RendererRow>,
     /// How far a sample of theirs may be from the one that a decision gives.
@@ -154,7 +154,7 @@ pub struct Report {
 
 /// A kernel on a scene in a stage.
 #[derive(Clone, Debug)]
-struct Row {
+struct KernelRow {
     /// The scene's name.
     scene: String,
     group: Group,
@@ -309,7 +309,7 @@ impl Measurement<'_> {
                             Err(refusal)
                         }
                     };
-                    rows.push(Row {
+                    rows.push(KernelRow {
                         scene: named.name.clone(),
                         group: named.group,
                         stage,

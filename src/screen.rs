@@ -23,7 +23,7 @@ mod layer;
 mod offscreen;
 mod osmesa;
 mod placement;
-mod program;
+mod shader_program;
 #[cfg(feature = "program")]
 mod timed;
 
@@ -44,7 +44,7 @@ pub use error::ScreenError;
 pub(crate) use layer::Layer;
 pub use offscreen::{Backend, Offscreen};
 pub use placement::Placement;
-use program::Program;
+use shader_program::ShaderProgram;
 #[cfg(feature = "program")]
 pub(crate) use timed::{Cost, DrawMethod, TimedScreen};
 
@@ -70,7 +70,7 @@ const FRAGMENT_CAPABILITIES: [u32; 8] = [
 /// that is what its caller promises. Each sets all state it relies on and restores none.
 pub struct Screen {
     gl: Rc<glow::Context>,
-    program: Program,
+    program: ShaderProgram,
     origin: Option<glow::UniformLocation>,
     extent: Option<glow::UniformLocation>,
     texture: glow::Texture,
@@ -101,7 +101,7 @@ impl Screen {
         if size.max_element() > max {
             return Err(ScreenError::TextureTooLarge { size, max });
         }
-        let program = Program::new(gl.clone(), include_str!("screen/picture.frag"))?;
+        let program = ShaderProgram::new(gl.clone(), include_str!("screen/picture.frag"))?;
         // SAFETY: as above.
         let vertex_array = unsafe { gl.create_vertex_array() }
             .map_err(|reason| ScreenError::refused("a vertex array", &reason))?;

@@ -18,7 +18,7 @@ use indicatif::{ProgressBar, ProgressFinish};
 
 use super::Failure;
 use super::arguments::{AngleArguments, PictureArguments, ProgramArguments, frames, stage};
-use super::maker::Maker;
+use super::renderer::Renderer;
 use super::round_trip::{RoundTrip, Through};
 use super::streams::{StandardOutput, refuse_terminal};
 use job::{Job, Stream, StreamFormat, count, numbered};
@@ -74,7 +74,7 @@ fn wrong(message: impl std::fmt::Display) -> clap::Error {
 struct Capture {
     scene: Scene,
     stage: Stage,
-    maker: Maker,
+    renderer: Renderer,
     image: Image,
     round_trip: RoundTrip,
     /// The picture is decoded by the curve of sRGB after its round trip.
@@ -83,7 +83,7 @@ struct Capture {
 
 impl Capture {
     fn make(&mut self, alpha: f64) -> Result<(), Failure> {
-        self.maker
+        self.renderer
             .make(&self.scene, self.stage, alpha, &mut self.image)
     }
 
@@ -99,17 +99,17 @@ impl Capture {
     /// The picture of a capture of one, after its round trip.
     fn single_picture(&mut self, alpha: f64) -> Result<&Image, Failure> {
         let size = self.image.size();
-        while_watched(size, self.maker.progress(), || self.make(alpha))?;
-        self.maker.finish()?;
+        while_watched(size, self.renderer.progress(), || self.make(alpha))?;
+        self.renderer.finish()?;
         self.sent()
     }
 
-    /// The picture of one frame after its round trip. With the last of all `frames` the maker is
+    /// The picture of one frame after its round trip. With the last of all `frames` the renderer is
     /// finished.
     fn picture(&mut self, frame: u64, frames: &RangeInclusive<u64>) -> Result<&Image, Failure> {
         self.make(frame_angle(frame))?;
         if frame == *frames.end() {
-            self.maker.finish()?;
+            self.renderer.finish()?;
         }
         self.sent()
     }
@@ -158,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut capture = Capture {
         scene: picture.scene()?,
         stage: arguments.stage,
-        maker: Maker::new(picture, &arguments.program)?,
+        renderer: Renderer::new(picture, &arguments.program)?,
         image: Image::new(size)?,
         round_trip: RoundTrip::open(arguments.through, size)?,
         linear: arguments.linear,
@@ -186,7 +186,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     // Said last: where the capture fails, one line says why, and no other.
-    let notes = [capture.maker.note(), capture.round_trip.note()];
+    let notes = [capture.renderer.note(), capture.round_trip.note()];
     for note in notes.into_iter().flatten() {
         super::say(&note);
     }

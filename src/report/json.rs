@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Machine, Measured, Pipeline, Report, Row, Spread, Timing};
+use super::{KernelRow, Machine, Measured, Pipeline, Report, Spread, Timing};
 use crate::diagnosis::{Hint, Summary};
 use crate::difference::Difference;
 
@@ -221,7 +221,7 @@ impl Report {
         rows.collect()
     }
 
-    fn json_rows<'a>(&self, row: &'a Row) -> Vec<JsonRow<'a>> {
+    fn json_rows<'a>(&self, row: &'a KernelRow) -> Vec<JsonRow<'a>> {
         match &row.measured {
             Err(refusal) => vec![JsonRow {
                 refused: Some(refusal),
@@ -237,7 +237,7 @@ impl Report {
 
     fn json_row<'a>(
         &self,
-        row: &'a Row,
+        row: &'a KernelRow,
         measured: Option<&Measured>,
         timing: Option<&Timing>,
     ) -> JsonRow<'a> {

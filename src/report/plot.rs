@@ -14,7 +14,7 @@ mod scaling;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::{Group, Measured, Report, Row, Spread};
+use super::{Group, KernelRow, Measured, Report, Spread};
 use crate::Kernel;
 use axis::{ErrorAxis, LogAxis};
 use drawing::{Area, Drawn, INK, TIME_AXIS, chart, color, font, shape};
@@ -98,7 +98,7 @@ impl Report {
 
     /// What is known about a group of scenes; `None` if nothing.
     fn panel(&self, group: Group) -> Option<Panel> {
-        let rows: Vec<(&Row, &Measured)> = self
+        let rows: Vec<(&KernelRow, &Measured)> = self
             .rows
             .iter()
             .filter(|row| row.group == group)

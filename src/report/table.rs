@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Measured, Pipeline, Report, Row, Spread, Timing};
+use super::{KernelRow, Measured, Pipeline, Report, Spread, Timing};
 use crate::Kernel;
 
 impl Report {
@@ -110,7 +110,7 @@ impl Report {
         measured.flat_map(|measured| &measured.timings)
     }
 
-    fn times(&self, row: &Row, measured: &Measured) -> Vec<String> {
+    fn times(&self, row: &KernelRow, measured: &Measured) -> Vec<String> {
         let mut cells = names(row);
         for timing in &measured.timings {
             cells.extend(time(timing.ms));
@@ -123,7 +123,7 @@ impl Report {
         cells
     }
 
-    fn errors_of(&self, row: &Row, Measured { errors, .. }: &Measured) -> Vec<String> {
+    fn errors_of(&self, row: &KernelRow, Measured { errors, .. }: &Measured) -> Vec<String> {
         let mut cells = names(row);
         let wrong = errors.wrong_pixels;
         let (all, rightly) = (&errors.all, &errors.decided_rightly);
@@ -281,7 +281,7 @@ impl Report {
     }
 }
 
-fn names(row: &Row) -> Vec<String> {
+fn names(row: &KernelRow) -> Vec<String> {
     vec![
         row.scene.clone(),
         row.stage.number().to_string(),
@@ -295,7 +295,7 @@ fn time(Spread { median, min, max }: Spread) -> [String; 2] {
 }
 
 /// A row without numbers, and why.
-fn refused(row: &Row, columns: usize) -> Vec<String> {
+fn refused(row: &KernelRow, columns: usize) -> Vec<String> {
     let mut cells = names(row);
     cells.push("refused".to_owned());
     cells.extend(vec!["–".to_owned(); columns - 1]);

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::{IVec2, UVec2};
 use glow::HasContext as _;
 
-use super::program::Program;
+use super::shader_program::ShaderProgram;
 use super::{ScreenError, check, set_unpacking};
 
 /// The retained texture and the quad that shows it, pixel for pixel.
@@ -14,7 +14,7 @@ use super::{ScreenError, check, set_unpacking};
 /// Each sets all state it relies on and restores none.
 pub(crate) struct Layer {
     gl: Rc<glow::Context>,
-    program: Program,
+    program: ShaderProgram,
     corner: Option<glow::UniformLocation>,
     texture: glow::Texture,
     /// Empty: a core context draws nothing without one.
@@ -29,7 +29,7 @@ impl Layer {
     /// # Errors
     /// [`ScreenError::Refused`] where the driver refuses the shaders or the texture.
     pub(crate) fn new(gl: Rc<glow::Context>) -> Result<Layer, ScreenError> {
-        let program = Program::new(gl.clone(), include_str!("layer.frag"))?;
+        let program = ShaderProgram::new(gl.clone(), include_str!("layer.frag"))?;
         // SAFETY: as for every call in this folder, `gl`'s context is current on this thread.
         let vertex_array = unsafe { gl.create_vertex_array() }
             .map_err(|reason| ScreenError::refused("a vertex array", &reason))?;

@@ -54,7 +54,7 @@ pub(crate) struct Cost {
 pub(crate) struct TimedScreen {
     // Dropped in this order: what belongs to the context before the context.
     framebuffer: Framebuffer,
-    renderer: Renderer,
+    drawing: Drawing,
     gl: Rc<glow::Context>,
     size: u32,
     /// Red, green, blue and alpha of every pixel shown last, rows from the bottom; nothing before
@@ -64,7 +64,7 @@ pub(crate) struct TimedScreen {
 }
 
 /// What draws by a [`DrawMethod`].
-enum Renderer {
+enum Drawing {
     Texture(Screen),
     DrawPixels(DrawPixels),
 }
@@ -144,10 +144,10 @@ impl TimedScreen {
         context.make_current()?;
         let made = TimedScreen::make(context.as_ref(), method, size);
         context.release();
-        let (framebuffer, renderer, gl) = made?;
+        let (framebuffer, drawing, gl) = made?;
         Ok(TimedScreen {
             framebuffer,
-            renderer,
+            drawing,
             gl,
             size,
             bytes: Vec::new(),
@@ -159,19 +159,19 @@ impl TimedScreen {
         context: &dyn Context,
         method: DrawMethod,
         size: u32,
-    ) -> Result<(Framebuffer, Renderer, Rc<glow::Context>), ScreenError> {
+    ) -> Result<(Framebuffer, Drawing, Rc<glow::Context>), ScreenError> {
         let gl = Rc::new(context.functions()?);
-        let renderer = match method {
+        let drawing = match method {
             DrawMethod::Texture => {
                 let size = UVec2::splat(size);
                 // SAFETY: the context is current, and made current again before the screen is used
                 // or dropped.
-                Renderer::Texture(unsafe { Screen::new(gl.clone(), size) }?)
+                Drawing::Texture(unsafe { Screen::new(gl.clone(), size) }?)
             }
-            DrawMethod::DrawPixels => Renderer::DrawPixels(DrawPixels::load(context)?),
+            DrawMethod::DrawPixels => Drawing::DrawPixels(DrawPixels::load(context)?),
         };
         let framebuffer = Framebuffer::new(gl.clone(), UVec2::splat(size), glow::RGBA8)?;
-        Ok((framebuffer, renderer, gl))
+        Ok((framebuffer, drawing, gl))
     }
 
     /// Shows `image`, and says what each step cost. Of a texture only `rows` are replaced, as by
@@ -195,20 +195,20 @@ impl TimedScreen {
         }
         self.framebuffer.bind();
         let start = Instant::now();
-        if let Renderer::Texture(screen) = &mut self.renderer {
+        if let Drawing::Texture(screen) = &mut self.drawing {
             screen.upload_rows(image, rows)?;
             self.finish();
         }
         let uploaded = Instant::now();
-        match &self.renderer {
-            Renderer::Texture(screen) => screen.draw(
+        match &self.drawing {
+            Drawing::Texture(screen) => screen.draw(
                 UVec2::splat(self.size),
                 Placement {
                     origin: IVec2::ZERO,
                     size: UVec2::splat(self.size),
                 },
             ),
-            Renderer::DrawPixels(functions) => functions.draw(&self.gl, image),
+            Drawing::DrawPixels(functions) => functions.draw(&self.gl, image),
         }
         self.finish();
         let drawn = Instant::now();
@@ -216,9 +216,9 @@ impl TimedScreen {
         let read = Instant::now();
         let size = UVec2::splat(self.size);
         check(&self.gl, "to draw the picture and read it back", size)?;
-        let upload = match self.renderer {
-            Renderer::Texture(_) => uploaded - start,
-            Renderer::DrawPixels(_) => Duration::ZERO,
+        let upload = match self.drawing {
+            Drawing::Texture(_) => uploaded - start,
+            Drawing::DrawPixels(_) => Duration::ZERO,
         };
         Ok(Cost {
             upload,

@@ -330,7 +330,7 @@ const MOUSE: [(&str, &str); 5] = [
 ];
 
 /// A row of the menu.
-pub(super) struct Row {
+pub(super) struct MenuRow {
     pub(super) keys: &'static str,
     pub(super) label: &'static str,
     pub(super) action: Action,
@@ -339,8 +339,8 @@ pub(super) struct Row {
 }
 
 /// Every action of a window that shows `subject`, as the menu shows it.
-pub(super) fn rows(subject: Subject) -> impl Iterator<Item = Row> {
-    subject.bindings().map(move |binding| Row {
+pub(super) fn rows(subject: Subject) -> impl Iterator<Item = MenuRow> {
+    subject.bindings().map(move |binding| MenuRow {
         keys: binding.keys,
         label: binding.label,
         action: binding.action,

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::tracer::Tally;
-    use crate::viewer::renderer::Given;
+    use crate::viewer::renderer::GivenRenderer;
     use crate::{Scene, Stage};
 
     const SIZE: u32 = 6;
@@ -390,7 +390,7 @@ mod tests {
         assert!(content.samples().is_some(), "a slow picture");
 
         let mut given = traced(3, 0..SIZE);
-        given.frame.renderer = Renderer::Given(Given {
+        given.frame.renderer = Renderer::Given(GivenRenderer {
             number: 0,
             name: Arc::from("homework"),
             edition: 0,

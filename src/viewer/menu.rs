@@ -2,7 +2,7 @@
 
 use glam::{IVec2, UVec2};
 
-use super::action::{Action, Row, Subject, rows};
+use super::action::{Action, MenuRow, Subject, rows};
 use super::canvas::{Color, TextBox};
 use super::lines::{DIM, INK};
 use super::rect::Rect;
@@ -31,7 +31,7 @@ impl Menu {
         }
     }
 
-    fn rows(&self) -> impl Iterator<Item = Row> {
+    fn rows(&self) -> impl Iterator<Item = MenuRow> {
         rows(self.subject)
     }
 
@@ -129,7 +129,7 @@ impl Menu {
 
     /// The columns of the widest row: a mark, the label, the keys, a margin.
     fn columns(&self) -> u32 {
-        let longest = |text: fn(&Row) -> &'static str| {
+        let longest = |text: fn(&MenuRow) -> &'static str| {
             let lengths = self.rows().map(|row| text(&row).chars().count());
             lengths.max().unwrap_or(0) as u32
         };

@@ -11,12 +11,12 @@ pub(super) enum Renderer {
     /// The tracer with this kernel.
     Kernel(Kernel),
     /// A renderer that the viewer was given.
-    Given(Given),
+    Given(GivenRenderer),
 }
 
 /// One of the renderers that the viewer was given.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Given {
+pub(super) struct GivenRenderer {
     /// Its place among them.
     pub(super) number: usize,
     pub(super) name: Arc<str>,
@@ -44,7 +44,7 @@ impl Renderers {
     /// the default kernel.
     pub(super) fn new(names: impl Iterator<Item = Arc<str>>, kernel: Option<Kernel>) -> Renderers {
         let given = names.enumerate().map(|(number, name)| {
-            Renderer::Given(Given {
+            Renderer::Given(GivenRenderer {
                 number,
                 name,
                 edition: 0,

@@ -105,7 +105,7 @@ impl<E: Into<ViewerError>> From<E> for Failure {
 }
 
 /// What makes the pictures of a thread.
-enum Engine {
+enum ThreadRenderer {
     /// The tracer, with the kernel that was asked for last.
     Kernels {
         tracer: Tracer,
@@ -122,14 +122,14 @@ enum Engine {
 /// The rows that were written, and what the frame took.
 type Written = (Range<u32>, Tally);
 
-impl Engine {
+impl ThreadRenderer {
     /// Makes the picture of `frame` in `image`; where nobody else holds the last picture, that is
     /// in `image`.
     fn render(&mut self, frame: &Frame, image: &mut Image) -> Result<Written, Failure> {
         let (scene, stage, alpha) = (&*frame.scene, frame.stage, frame.alpha);
         match (self, &frame.renderer) {
             (
-                Engine::Kernels {
+                ThreadRenderer::Kernels {
                     tracer,
                     threads,
                     progress,
@@ -141,7 +141,7 @@ impl Engine {
                 let rows = tracer.retrace(scene, stage, alpha, image)?;
                 Ok((rows, tracer.tally()))
             }
-            (Engine::Given { renderer, edition }, wanted) => {
+            (ThreadRenderer::Given { renderer, edition }, wanted) => {
                 if let Renderer::Given(given) = wanted
                     && given.edition != *edition
                 {
@@ -179,7 +179,7 @@ fn choose(tracer: &mut Tracer, kernel: Kernel, threads: usize) -> Result<(), Vie
 
 /// What makes pictures of frames, with a pool of images to make them in.
 pub(super) struct Pictures {
-    engine: Engine,
+    renderer: ThreadRenderer,
     size: u32,
     /// The pool: every picture that was handed out, the last one at the end. A picture that nobody
     /// else holds is written over.
@@ -202,7 +202,7 @@ impl Pictures {
         let (kernel, threads) = (options.kernel.unwrap_or_default(), options.threads);
         let tracer = Tracer::new(kernel, threads)?;
         Ok(Pictures {
-            engine: Engine::Kernels {
+            renderer: ThreadRenderer::Kernels {
                 progress: Arc::new(Mutex::new(tracer.progress())),
                 tracer,
                 threads,
@@ -218,7 +218,7 @@ impl Pictures {
     /// Those of the renderer with this number.
     fn of_renderer(number: usize, renderer: Box<dyn Render + Send>, size: u32) -> Pictures {
         Pictures {
-            engine: Engine::Given {
+            renderer: ThreadRenderer::Given {
                 renderer,
                 edition: 0,
             },
@@ -241,7 +241,7 @@ impl Pictures {
         let start = Instant::now();
         // Over another picture than its last one, the tracer writes all rows.
         let written = match Arc::get_mut(&mut image) {
-            Some(image) => self.engine.render(frame, image),
+            Some(image) => self.renderer.render(frame, image),
             None => Ok((0..0, Tally::default())),
         };
         let time = start.elapsed();
@@ -267,9 +267,9 @@ impl Pictures {
         pixel: UVec2,
         image: Option<&Image>,
     ) -> Result<String, Failure> {
-        let Engine::Kernels {
+        let ThreadRenderer::Kernels {
             tracer, threads, ..
-        } = &mut self.engine
+        } = &mut self.renderer
         else {
             return Ok(String::new());
         };
@@ -322,7 +322,7 @@ impl Pictures {
     /// What has been found to be wrong with the last picture since it was made, if anything: it is
     /// made again where it is wanted again.
     fn recheck(&mut self) -> Option<Reply> {
-        let Engine::Given { renderer, .. } = &mut self.engine else {
+        let ThreadRenderer::Given { renderer, .. } = &mut self.renderer else {
             return None;
         };
         let reason = renderer.recheck().err()?;
@@ -371,9 +371,9 @@ impl Tracing {
         wake: impl Fn() + Clone + Send + 'static,
     ) -> Result<Tracing, ViewerError> {
         let size = of_kernels.size;
-        let progress = match &of_kernels.engine {
-            Engine::Kernels { progress, .. } => Some(progress.clone()),
-            Engine::Given { .. } => None,
+        let progress = match &of_kernels.renderer {
+            ThreadRenderer::Kernels { progress, .. } => Some(progress.clone()),
+            ThreadRenderer::Given { .. } => None,
         };
         let cancellers = renderers.iter().map(|renderer| renderer.canceller());
         let cancellers = cancellers.collect();

@@ -8,7 +8,7 @@ use super::Failure;
 use super::arguments::{PictureArguments, ProgramArguments};
 
 /// A kernel's tracer, or the program of `--program`.
-pub(crate) enum Maker {
+pub(crate) enum Renderer {
     Kernel(Tracer),
     Program {
         program: Box<Program>,
@@ -19,18 +19,18 @@ pub(crate) enum Maker {
     },
 }
 
-impl Maker {
+impl Renderer {
     pub(crate) fn new(
         picture: &PictureArguments,
         program: &ProgramArguments,
-    ) -> Result<Maker, Failure> {
+    ) -> Result<Renderer, Failure> {
         Ok(match program.start()? {
-            Some(program) => Maker::Program {
+            Some(program) => Renderer::Program {
                 program: Box::new(program),
                 nans: 0,
                 infinities: 0,
             },
-            None => Maker::Kernel(Tracer::new(
+            None => Renderer::Kernel(Tracer::new(
                 picture.kernel.unwrap_or_default(),
                 picture.threads(),
             )?),
@@ -45,8 +45,8 @@ impl Maker {
         image: &mut Image,
     ) -> Result<(), Failure> {
         match self {
-            Maker::Kernel(tracer) => tracer.trace(scene, stage, alpha, image)?,
-            Maker::Program {
+            Renderer::Kernel(tracer) => tracer.trace(scene, stage, alpha, image)?,
+            Renderer::Program {
                 program,
                 nans,
                 infinities,
@@ -64,23 +64,23 @@ impl Maker {
     /// How far a tracer is with its picture; of a program that is not known.
     pub(crate) fn progress(&self) -> Option<Progress> {
         match self {
-            Maker::Kernel(tracer) => Some(tracer.progress()),
-            Maker::Program { .. } => None,
+            Renderer::Kernel(tracer) => Some(tracer.progress()),
+            Renderer::Program { .. } => None,
         }
     }
 
     /// Ends the program, which must not have written more than its pictures.
     pub(crate) fn finish(&mut self) -> Result<(), Failure> {
         match self {
-            Maker::Kernel(_) => Ok(()),
-            Maker::Program { program, .. } => Ok(program.finish()?),
+            Renderer::Kernel(_) => Ok(()),
+            Renderer::Program { program, .. } => Ok(program.finish()?),
         }
     }
 
     /// How many samples of the program's pictures are not finite, if any.
     pub(crate) fn note(&self) -> Option<String> {
         match self {
-            Maker::Program {
+            Renderer::Program {
                 program,
                 nans,
                 infinities,

@@ -7,20 +7,20 @@ use glow::HasContext as _;
 use super::ScreenError;
 
 /// A linked program: the quad that fills the viewport, and a fragment shader.
-pub(super) struct Program {
+pub(super) struct ShaderProgram {
     gl: Rc<glow::Context>,
     pub(super) name: glow::Program,
 }
 
-impl Program {
+impl ShaderProgram {
     /// Compiles and links, with `fragment` as the source of the fragment shader; `gl`'s context is
     /// current.
-    pub(super) fn new(gl: Rc<glow::Context>, fragment: &str) -> Result<Program, ScreenError> {
+    pub(super) fn new(gl: Rc<glow::Context>, fragment: &str) -> Result<ShaderProgram, ScreenError> {
         // SAFETY: as for every call in this folder, `gl`'s functions are loaded and its context is
         // current on this thread.
         let name = unsafe { gl.create_program() }
             .map_err(|reason| ScreenError::refused("a shader program", &reason))?;
-        let program = Program { gl, name };
+        let program = ShaderProgram { gl, name };
         let quad = include_str!("quad.vert");
         program.attach(glow::VERTEX_SHADER, "the vertex shader", quad)?;
         program.attach(glow::FRAGMENT_SHADER, "the fragment shader", fragment)?;
@@ -69,7 +69,7 @@ impl Program {
     }
 }
 
-impl Drop for Program {
+impl Drop for ShaderProgram {
     fn drop(&mut self) {
         // SAFETY: the program was made here and nothing else deletes it.
         unsafe { self.gl.delete_program(self.name) };
