@@ -36,7 +36,7 @@ pub struct Image {
     raster: Raster,
     /// The number of the frame that a tracer has left here, to trace the next one over it; 0 after
     /// anyone else could write.
-    frame: u64,
+    frame_number: u64,
 }
 
 /// Whatever a raster can be asked, an image can: its samples, its difference to another, a file.
@@ -75,7 +75,10 @@ impl Image {
     /// floats do not fit.
     pub fn new(size: u32) -> Result<Image, ImageError> {
         let raster = Raster::new(size, size)?;
-        Ok(Image { raster, frame: 0 })
+        Ok(Image {
+            raster,
+            frame_number: 0,
+        })
     }
 
     /// N, the number of pixels along a side.
@@ -83,20 +86,20 @@ impl Image {
         self.raster.width()
     }
 
-    /// All 3 N² floats, to be written: red, green, blue of each pixel, rows from the bottom. The next
-    /// [`Tracer::retrace`](crate::Tracer::retrace) into this picture writes all of it.
+    /// All 3 N² floats, to be written: red, green, blue of each pixel, rows from the bottom. The
+    /// next [`Tracer::retrace`](crate::Tracer::retrace) into this picture writes all of it.
     pub fn samples_mut(&mut self) -> &mut [f32] {
         self.samples_of_frame(0)
     }
 
     /// The number of the frame that a tracer left here.
-    pub(crate) fn frame(&self) -> u64 {
-        self.frame
+    pub(crate) fn frame_number(&self) -> u64 {
+        self.frame_number
     }
 
     /// The samples, for a tracer that is to leave the frame of this number, and no other.
-    pub(crate) fn samples_of_frame(&mut self, frame: u64) -> &mut [f32] {
-        self.frame = frame;
+    pub(crate) fn samples_of_frame(&mut self, number: u64) -> &mut [f32] {
+        self.frame_number = number;
         self.raster.samples_mut()
     }
 }

@@ -90,8 +90,8 @@
 //! - No fused multiply-add where it would give other bits: only arithmetic with a bound, of which
 //!   nothing but what is certain gets into a picture, uses it where the processor has it.
 //! - No tree over the solids: rays have three directions, so every solid knows the rows and columns
-//!   that it can touch. What can stand between the surface and the light is found in a grid over the
-//!   surface, what can stand between a solid and the light in a list that a sweep makes once.
+//!   that it can touch. What can stand between the surface and the light is found in a grid over
+//!   the surface, what can stand between a solid and the light in a list that a sweep makes once.
 
 pub mod camera;
 pub mod diagnosis;

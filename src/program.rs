@@ -90,9 +90,9 @@ impl Program {
     /// is longer than 4 KiB comes in pieces. Control characters in it are the caller's business.
     ///
     /// # Errors
-    /// [`ProgramError::CommandWords`] where `command` has an open quote, [`ProgramError::Empty`] where it
-    /// has no words, [`ProgramError::Folder`] where no scene can be written for the program,
-    /// [`ProgramError::Start`] where the program cannot be started.
+    /// [`ProgramError::CommandWords`] where `command` has an open quote, [`ProgramError::Empty`]
+    /// where it has no words, [`ProgramError::Folder`] where no scene can be written for the
+    /// program, [`ProgramError::Start`] where the program cannot be started.
     pub fn start(
         command: &str,
         timeout: Duration,

@@ -1,8 +1,9 @@
 //! What exists: solids, a surface, a light, one material.
 //!
 //! Lengths have no unit. A coordinate is 0 or of magnitude 1e-30 to 1e6. The three amounts of a
-//! colour, an intensity or a coefficient are red, green and blue, each 0 or 1e-30 to 1e6, linear and
-//! not clamped. [`Scene::from_toml`] lists all rules, and [`SceneBuilder::build`] keeps them, too.
+//! colour, an intensity or a coefficient are red, green and blue, each 0 or 1e-30 to 1e6, linear
+//! and not clamped. [`Scene::from_toml`] lists all rules, and [`SceneBuilder::build`] keeps them,
+//! too.
 
 mod bounding_ball;
 mod builder;

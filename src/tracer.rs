@@ -96,7 +96,7 @@ pub struct Tracer {
     /// The rows of the frame that [`Tracer::retrace`] traced last.
     history: Vec<RowHistory>,
     /// The number of that frame, or 0.
-    frame: u64,
+    frame_number: u64,
 }
 
 impl Tracer {
@@ -114,7 +114,7 @@ impl Tracer {
             pool,
             simd: Simd::best(),
             history: Vec::new(),
-            frame: 0,
+            frame_number: 0,
             progress: Progress::default(),
             tally: Tally::default(),
             arena: Mutex::default(),
@@ -297,7 +297,7 @@ impl Tracer {
         *inner(&mut self.arena) = arena;
         if self.progress.is_cancelled() {
             // Nobody knows what the image shows.
-            self.frame = 0;
+            self.frame_number = 0;
             return Err(TraceError::Cancelled);
         }
         traced
@@ -316,13 +316,13 @@ impl Tracer {
         let (remembered, samples) = match update {
             Update::Whole => (None, image.samples_mut()),
             Update::Changes => {
-                let is_same = self.frame != 0 && image.frame() == self.frame;
+                let is_same = self.frame_number != 0 && image.frame_number() == self.frame_number;
                 if !is_same {
                     history.iter_mut().for_each(RowHistory::clear);
                 }
                 history.resize_with(size as usize, RowHistory::default);
-                self.frame = next_frame();
-                let samples = image.samples_of_frame(self.frame);
+                self.frame_number = next_frame_number();
+                let samples = image.samples_of_frame(self.frame_number);
                 (Some(history.as_mut_slice()), samples)
             }
         };
@@ -522,7 +522,7 @@ enum Update {
 }
 
 /// The number of a new frame, unique among all tracers.
-fn next_frame() -> u64 {
+fn next_frame_number() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(1);
     COUNT.fetch_add(1, Relaxed)
 }

@@ -58,7 +58,8 @@ pub(crate) struct Arguments {
     /// A file to write the report to, as JSON; - for standard output, in place of the tables
     #[arg(long, value_name = "PATH")]
     json: Option<PathBuf>,
-    /// A file to draw error against time into, as SVG; - for standard output, in place of the tables
+    /// A file to draw error against time into, as SVG; - for standard output, in place of the
+    /// tables
     #[arg(long, value_name = "PATH.svg")]
     plot: Option<PathBuf>,
 }
@@ -147,7 +148,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         finished?;
         return grade(&report, most);
     }
-    // A file has the report before drivers are called, which may hang; standard output gets it once.
+    // A file has the report before drivers are called, which may hang; standard output gets it
+    // once.
     let saved = match &arguments.json {
         Some(path) if is_standard(path) => Ok(()),
         _ => save_json(&report),

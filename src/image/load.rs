@@ -101,8 +101,8 @@ pub enum LoadError {
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
     /// The layer to read: what the names of its channels begin with, or the name of its part.
-    /// `None` is the first layer of channels that are named by a letter alone, else the first layer. A
-    /// file whose only layer has no name, as a PNG's, leaves no choice.
+    /// `None` is the first layer of channels that are named by a letter alone, else the first
+    /// layer. A file whose only layer has no name, as a PNG's, leaves no choice.
     pub layer: Option<String>,
     /// Whether colours are read as they are stored where pixels are not opaque: multiplied by alpha
     /// in an EXR, not so in a PNG.
@@ -163,10 +163,10 @@ impl Raster {
     }
 
     /// Reads `path`: red, green and blue of an `.exr`, every 32-bit float bit for bit, from
-    /// channels named R, G, B or r, g, b, alone or behind a layer's name and a dot; a `.pfm`, bit for bit
-    /// too, grey as three equal samples; a `.png`, where a sample is the byte / 255 (of a PNG of 16
-    /// bits: the number / 65535), rounded to f32; or a `.ppm`, P3 or P6, where it is the number /
-    /// the largest that the file names.
+    /// channels named R, G, B or r, g, b, alone or behind a layer's name and a dot; a `.pfm`, bit
+    /// for bit too, grey as three equal samples; a `.png`, where a sample is the byte / 255 (of a
+    /// PNG of 16 bits: the number / 65535), rounded to f32; or a `.ppm`, P3 or P6, where it is the
+    /// number / the largest that the file names.
     ///
     /// # Errors
     /// [`LoadError`] where the extension is none of these, or the file is not a whole picture

@@ -29,8 +29,8 @@ impl Raster {
         Ok(())
     }
 
-    /// Writes a byte a sample and nothing else: red, green and blue of each pixel as [`display_byte`]
-    /// shows them, rows from the **top**, a row from left to right.
+    /// Writes a byte a sample and nothing else: red, green and blue of each pixel as
+    /// [`display_byte`] shows them, rows from the **top**, a row from left to right.
     ///
     /// ```
     /// let image = firsthit::Image::new(2)?;

@@ -105,7 +105,8 @@ pub(super) fn remove_folder(folder: &Path) {
 /// and removes their scenes: for a program that is about to end without coming back to whoever asks
 /// for pictures, as on a signal. Whoever starts or ends a program from now on waits for ever.
 ///
-/// Elsewhere than on Unix a program leaves when its standard input ends: together with this process.
+/// Elsewhere than on Unix a program leaves when its standard input ends: together with this
+/// process.
 pub fn end_all() {
     let Some(held) = parting::lock(&HELD) else {
         return;

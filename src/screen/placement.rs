@@ -61,8 +61,8 @@ impl Placement {
         (u32::MAX / 2) / size.max(1)
     }
 
-    /// The pixel of `picture`, column and row, that the pixel `window` of the framebuffer shows; both
-    /// count from the bottom left corner. `None` beside the picture.
+    /// The pixel of `picture`, column and row, that the pixel `window` of the framebuffer shows;
+    /// both count from the bottom left corner. `None` beside the picture.
     pub fn pixel_at(&self, window: IVec2, picture: UVec2) -> Option<UVec2> {
         let place = window.as_i64vec2() - self.origin.as_i64vec2();
         let size = self.size.as_i64vec2();
@@ -72,8 +72,8 @@ impl Placement {
         Some(((2 * place + 1) * picture.as_i64vec2() / (2 * size)).as_uvec2())
     }
 
-    /// The pixels of the framebuffer that show the pixel of `picture` at column and row `pixel`: the
-    /// bottom left one, and the one past the top right one. Both are the same in a direction in
+    /// The pixels of the framebuffer that show the pixel of `picture` at column and row `pixel`:
+    /// the bottom left one, and the one past the top right one. Both are the same in a direction in
     /// which the picture is drawn too small for this pixel to be seen.
     pub fn rectangle_of(&self, pixel: UVec2, picture: UVec2) -> [IVec2; 2] {
         let (size, picture) = (self.size.as_i64vec2(), picture.max(UVec2::ONE).as_i64vec2());

@@ -15,7 +15,8 @@ struct State {
 }
 
 impl Progress {
-    /// How many rows of the frame are done, 0 to N, in steps of some rows; 0 before the first frame.
+    /// How many rows of the frame are done, 0 to N, in steps of some rows; 0 before the first
+    /// frame.
     pub fn rows(&self) -> u32 {
         self.0.rows.load(Relaxed)
     }

@@ -22,8 +22,8 @@
 //! ```
 //!
 //! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that are not hidden
-//!   (`culling`), their colours (`appearance`) and shadows (`shadows`), and the surface (`surface`).
-//!   The result is plain data (`frame`): regions and paints.
+//!   (`culling`), their colours (`appearance`) and shadows (`shadows`), and the surface
+//!   (`surface`). The result is plain data (`frame`): regions and paints.
 //! - `edges/` crosses regions with rows. Eye rays are parallel, and so are rays to the light: every
 //!   silhouette, edge of a face, outline of a shadow on a plane or of a mirror image is a straight
 //!   line or an ellipse. An edge is a root of its equation, enclosed by a bound on its error. So a
@@ -42,17 +42,17 @@
 //!   (`history`).
 //!
 //! Edges and visibility are f64 with proven bounds for every kernel: a filter. Shading has bounds
-//! for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the definition
-//! of the picture (`pixel.rs`), from which every formula here is derived.
+//! for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the
+//! definition of the picture (`pixel.rs`), from which every formula here is derived.
 //!
 //! A new kind of solid, such as a cylinder, would need
 //!
-//! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a bounding ball
-//!   (`bounding_ball`), a test whether it lies inside of others (`enclosed`), what is exactly decided
-//!   about it (`exact`), what may shade it (`casters`);
-//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view_space`,
-//!   `view`, `extent`, `pixel`, `palette`, `decision`, `explain`, `colors` and `mistaken` name every
-//!   kind of solid. Solids are numbered spheres first: look for `spheres.len()`;
+//! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a place in the numbering
+//!   (`solid`), a bounding ball (`bounding_ball`), a test whether it lies inside of others
+//!   (`enclosed`), what is exactly decided about it (`exact`), what may shade it (`casters`);
+//! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view`,
+//!   `extent`, `palette` and `decision` name every kind of solid, and elsewhere the compiler names
+//!   each `match` on a `Solid`;
 //! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours
 //!   (`prepare/appearance`, `visibility/resolve`, and `shade/` where they vary), shadows on planes
 //!   and on spheres (`prepare/shadows`, `shade/caster`), and separating planes

@@ -111,7 +111,8 @@ impl<R: Real> Shading<R> {
     }
 }
 
-/// h = (v + l)/|v + l|, where v + l is not 0. `eye_direction` is that of eye rays, the opposite of v.
+/// h = (v + l)/|v + l|, where v + l is not 0. `eye_direction` is that of eye rays, the opposite of
+/// v.
 pub(super) fn halfway<R: Real>(eye_direction: &Direction<R>, to_light: &Direction<R>) -> Vector<R> {
     let v = -eye_direction
         .vector

@@ -1,11 +1,11 @@
 //! Rows written past the caches, for pictures that do not fit into them.
 //!
-//! A plain store first fetches the cache line that it writes to, and pushes another one out. Both are
-//! for nothing if the picture leaves the cache before it is read. So a row is traced
-//! into a buffer that stays in the cache, and copied from there by stores that go to memory
-//! directly. Where a picture fits, these are slower: on an AMD EPYC (Zen 5, 32 MiB of last-level
-//! cache), one thread of `exact` took 0.20 instead of 0.17 ms at N = 500, 0.99 instead of 0.83 at
-//! 1400, but 1.98 instead of 2.15 at 2000 and 7.9 instead of 8.8 at 4000.
+//! A plain store first fetches the cache line that it writes to, and pushes another one out. Both
+//! are for nothing if the picture leaves the cache before it is read. So a row is traced into a
+//! buffer that stays in the cache, and copied from there by stores that go to memory directly.
+//! Where a picture fits, these are slower: on an AMD EPYC (Zen 5, 32 MiB of last-level cache), one
+//! thread of `exact` took 0.20 instead of 0.17 ms at N = 500, 0.99 instead of 0.83 at 1400, but
+//! 1.98 instead of 2.15 at 2000 and 7.9 instead of 8.8 at 4000.
 
 /// The bytes of the largest picture that is stored as usual: N is 1672.
 pub(super) const PLAIN: usize = 32 << 20;

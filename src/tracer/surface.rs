@@ -67,8 +67,8 @@ impl<R: Real> Surface<R> {
     }
 
     /// The half-spaces whose intersection holds the square's shadow: all points whose ray in the
-    /// direction `to_light` meets the square. `rise` is the sign of that ray's rise. The half-spaces
-    /// follow from [`Surface::is_ahead`], whose conditions are linear in the origin.
+    /// direction `to_light` meets the square. `rise` is the sign of that ray's rise. The
+    /// half-spaces follow from [`Surface::is_ahead`], whose conditions are linear in the origin.
     ///
     /// Where `rise` is not 0, the intersection is the shadow. A level ray meets the square from
     /// some points of its plane only, which the half-spaces do not tell from the others.

@@ -6,7 +6,8 @@ use super::ladder::Rung;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Tally {
-    /// Pixels that double-doubles settled: with the kernel reference, which tries no f64, nearly all.
+    /// Pixels that double-doubles settled: with the kernel reference, which tries no f64, nearly
+    /// all.
     pub double_double: u64,
     /// Pixels that double-doubles left in doubt, and arbitrary precision settled.
     pub arbitrary: u64,

@@ -221,8 +221,8 @@ impl<R: Real> Tetrahedron<R> {
         all(self.met(functions).map(|half_space| half_space.holds(line)))
     }
 
-    /// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the half-space
-    /// in which lines enter the first one last.
+    /// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the
+    /// half-space in which lines enter the first one last.
     pub(super) fn entered_pairs<'a>(
         &'a self,
         functions: &'a EdgeFunctions<R>,

@@ -20,8 +20,8 @@ pub(super) struct Times {
 }
 
 /// Stage, kernel, α and size; the times of tracing, upload and drawing, and their sum; how many
-/// frames a second could be traced, and how many are displayed; the pixels in doubt, and the parts of a
-/// row. Lines of a name and a value.
+/// frames a second could be traced, and how many are displayed; the pixels in doubt, and the parts
+/// of a row. Lines of a name and a value.
 pub(super) fn information(traced: &Traced, size: u32, times: Times) -> String {
     let frame = &traced.frame;
     let ms = |time: Duration| format!("{:.2} ms", 1e3 * time.as_secs_f64());

@@ -17,8 +17,8 @@ pub(super) struct Layout {
 impl Layout {
     /// Divides a window of `surface` pixels. A panel, which should be `wanted` pixels wide and
     /// high, stands to the right of `picture`, width and height in pixels; below it, where the
-    /// window is taller than the picture is in its width. It leaves the picture the window's shorter
-    /// way, or half of the window, and takes what the picture has no use for.
+    /// window is taller than the picture is in its width. It leaves the picture the window's
+    /// shorter way, or half of the window, and takes what the picture has no use for.
     pub(super) fn new(surface: UVec2, picture: UVec2, wanted: Option<UVec2>) -> Layout {
         let window = Rect::new(IVec2::ZERO, surface);
         let Some(wanted) = wanted else {

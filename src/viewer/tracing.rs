@@ -259,8 +259,8 @@ impl Pictures {
         Ok((traced, image))
     }
 
-    /// What is wrong with the pixel in `image`, if a renderer made that; and the pixel, worked through
-    /// by the kernel, or by that of the truth.
+    /// What is wrong with the pixel in `image`, if a renderer made that; and the pixel, worked
+    /// through by the kernel, or by that of the truth.
     fn explain(
         &mut self,
         frame: &Frame,

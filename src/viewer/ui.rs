@@ -115,8 +115,8 @@ impl Ui {
     }
 
     /// Draws the picture, and over it and beside it what there is to say. What it took; where
-    /// `waits`, until it is done. `None` where there is no window, or where the texture was lost and
-    /// must be uploaded again.
+    /// `waits`, until it is done. `None` where there is no window, or where the texture was lost
+    /// and must be uploaded again.
     pub(super) fn draw(
         &mut self,
         values: &HudValues,

@@ -29,8 +29,8 @@ impl ColorSpace {
         space
     }
 
-    /// What a pixel of a display stands for as opponents: luminance, red against green, blue against
-    /// yellow. They are those of the paper's YCxCz, which scales and shifts them.
+    /// What a pixel of a display stands for as opponents: luminance, red against green, blue
+    /// against yellow. They are those of the paper's YCxCz, which scales and shifts them.
     pub(super) fn opponents(&self, pixel: &[f32]) -> [f64; 3] {
         // A NaN is black.
         let shown = |channel: usize| pixel[channel].clamp(0.0, 1.0).max(0.0);

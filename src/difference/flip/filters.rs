@@ -51,7 +51,8 @@ impl Filters {
         let [first, second] = blue_yellow.each_ref().map(|part| part.iter().sum::<f64>());
         let sum = (first * first + second * second).sqrt();
 
-        // Edges and points, of its feature pipeline: the first and the second derivative of a Gaussian.
+        // Edges and points, of its feature pipeline: the first and the second derivative of a
+        // Gaussian.
         let sigma = 0.5 * 0.082 * pixels_per_degree;
         let radius = (3.0 * sigma).ceil();
         let height = |x: f64| libm::exp(-x * x / (2.0 * sigma * sigma));

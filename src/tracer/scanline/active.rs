@@ -72,8 +72,9 @@ struct Span {
 /// The edges that cross a row from the left to the right, and what is visible in the gaps between
 /// them.
 ///
-/// What a gap shows depends on the edges to its left, and not on their columns. So it is kept from
-/// row to row; where two edges exchange places, only the gaps between them are resolved again.
+/// Which edges lie to the left of a gap determines what the gap shows; their columns do not matter.
+/// So what gaps show is kept from row to row. Where two edges exchange places, the gap between them
+/// is resolved again.
 #[derive(Default)]
 pub(crate) struct ActiveEdges {
     /// Empty, except while gaps are resolved.
@@ -92,7 +93,8 @@ pub(crate) struct ActiveEdges {
     edges: Vec<Edge>,
     /// The columns of `edges`, and N at the end: side by side, for loops over all of them.
     sorted_columns: Vec<[u32; ROWS]>,
-    /// What the gap before each of `edges` shows, and the gap after the last.
+    /// What each gap shows: gap i lies to the left of `edges[i]`, and the last gap to the right of
+    /// all edges.
     gaps: Vec<Packed>,
     /// The columns of `edges` in the row that is being sorted.
     row_columns: Vec<u32>,

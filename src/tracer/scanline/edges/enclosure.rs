@@ -1,7 +1,8 @@
 //! Enclosures of a region's edges, before they are rounded to columns.
 
-/// Enclosures of where a region begins and ends, in as many rows as there are lanes. Positions are
-/// given in columns, and both ends are included.
+/// For as many rows as there are lanes, two intervals that enclose the columns of a region from
+/// outside and from inside. Their ends are positions in columns, which need not be whole; the ends
+/// belong to the intervals.
 pub(crate) struct ColumnEnclosure<V> {
     /// No pixel outside of this interval is in the region.
     pub(crate) possible: [V; 2],
@@ -9,5 +10,5 @@ pub(crate) struct ColumnEnclosure<V> {
     pub(crate) certain: [V; 2],
 }
 
-/// An end of an interval without columns: none lies at or before this position.
+/// The right end of an interval without columns: no column lies at or to the left of it.
 pub(crate) const NOWHERE: f64 = -1.0;

@@ -1,4 +1,4 @@
-//! The points of a plane that eye rays meet.
+//! Where eye rays meet a plane, as a linear function of the pixel.
 
 use crate::number::Bounded;
 use crate::scene::Support;

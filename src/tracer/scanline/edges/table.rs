@@ -16,7 +16,7 @@ pub(crate) enum RegionKind {
     Surface,
     /// Their points on a receiver are in one shadow.
     Shadow(Receiver),
-    /// Their eye rays enter the first of two front faces last, and not the second.
+    /// Of two front faces that share an edge, their eye rays enter the first one last.
     Crease,
     /// Their eye rays meet a solid.
     Direct(SolidIndex),

@@ -49,8 +49,8 @@ impl<'f> PreparedSurface<'f> {
         let zero = Bounded::exact(0.0);
         let [one, three, ten] = [1.0, EYE_Y, EYE_Z].map(Bounded::exact);
         let third = one / three;
-        // `ViewTransform::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height, and
-        // z is 3N/2 − 10 t.
+        // `ViewTransform::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height,
+        // and z is 3N/2 − 10 t.
         let height = surface.square.height_in_pixels;
         let plane = PixelPlane {
             origin: Vector::new(

@@ -1,9 +1,10 @@
 //! The arithmetic of the shader of spheres: certified f64, with bounds on errors, or f32 and f64
 //! without.
 //!
-//! f32 and f64 round after every operation, so that their pictures are the same bytes on every
-//! machine. Certified f64 uses fused multiply-add if the processor has it, which rounds once
-//! instead of twice. The errors stay within the same bounds, and certified samples are the same.
+//! Without bounds, every operation rounds, so that pictures are the same bytes on every machine.
+//! Certified f64 uses fused multiply-add where the processor has it. A fused operation rounds once
+//! instead of twice, so its error stays within the same bound; a sample is certified only if all
+//! numbers within the bound round to it, so it is the same with and without fused operations.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -34,7 +35,7 @@ pub(crate) type Mask<S, P> = <LaneVector<S, P> as SimdBase<S>>::Mask;
 /// Three vectors of samples as they lie in memory.
 pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<LaneVector<S, P>>; 3];
 
-/// An arithmetic.
+/// An arithmetic of the shader: its numbers, and what it does about their errors.
 pub(crate) trait Policy<S: Simd> {
     type Lane: Lane;
 

@@ -27,19 +27,21 @@ pub(crate) const ZONES: usize = 3;
 /// R over the smallest s of each zone.
 const ZONE_DIVISORS: [f64; ZONES] = [8.0, 128.0, 16384.0];
 
-/// The linear form constant + q · q + m · m + s · s, whose fields are the coefficients of the
-/// coordinates of the same names.
+/// A linear form in the coordinates of a normal: constant + a_q q + a_m m + a_s s.
 #[derive(Clone, Copy)]
 pub(crate) struct LinearForm {
     pub(crate) constant: f64,
+    /// a_q.
     pub(crate) q: f64,
+    /// a_m.
     pub(crate) m: f64,
+    /// a_s.
     pub(crate) s: f64,
     /// A bound on the error of the form in f64, in any zone.
     pub(crate) error: f64,
     /// A bound on the form's magnitude.
     pub(crate) magnitude: f64,
-    /// Whether `s` is certainly not negative, or certainly not positive: then the form is concave,
+    /// Whether a_s is certainly not negative, or certainly not positive: then the form is concave,
     /// or convex, along a row.
     pub(crate) is_concave: Option<bool>,
 }
@@ -165,11 +167,11 @@ impl HitBounds {
         highlight: &Highlight,
         radius: Bounded,
     ) -> SphereHighlight {
-        // 1 − n·h is computed as Y = |D|²/2, where D = n − h = (q, m, s)/R − h. Let ε be the error of
-        // D without the rounding of its three differences, which is less than u of D. Then the error
-        // of Y is at most |D| |ε| + |ε|² + 16u Y. |D| = √(2Y) is at most (δ + 2Y/δ)/2 for any δ > 0,
-        // which is linear in Y, and equal to |D| where δ² = 2Y. δ = 1/√n, where the highlight is
-        // steepest.
+        // 1 − n·h is computed as Y = |D|²/2, where D = n − h = (q, m, s)/R − h. Let ε be the error
+        // of D without the rounding of its three differences, which is less than u of D. Then the
+        // error of Y is at most |D| |ε| + |ε|² + 16u Y. |D| = √(2Y) is at most (δ + 2Y/δ)/2 for any
+        // δ > 0, which is linear in Y, and equal to |D| where δ² = 2Y. δ = 1/√n, where the
+        // highlight is steepest.
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         // No component of n is more than 1. 1/R and the product with it round.

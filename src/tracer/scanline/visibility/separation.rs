@@ -2,8 +2,8 @@
 //!
 //! All eye rays have one direction, so they cross a plane that separates two solids from the same
 //! side. Every ray that meets both meets the solid on that side first. This needs no depth test,
-//! and holds for a whole frame. A plane across the eye rays separates most solids of a crowd; planes
-//! between others are looked for if there are few solids.
+//! and holds for a whole frame. A plane across the eye rays separates most solids of a crowd;
+//! planes between others are looked for if there are few solids.
 
 use bumpalo::Bump;
 

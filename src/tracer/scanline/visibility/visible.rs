@@ -1,4 +1,4 @@
-//! What gaps and spans show: the answer of `resolve`, as it is cached.
+//! What a gap or a span shows. `resolve` finds it, and `active` keeps it from row to row.
 
 use std::ops::Range;
 
