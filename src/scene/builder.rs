@@ -2,6 +2,12 @@
 
 use glam::DVec3;
 
+use super::error::SceneError;
+use super::exact::Facts;
+use super::rules::{
+    check_background, check_count, check_light, check_material, check_sphere, check_surface,
+    check_tetrahedron,
+};
 use super::{Light, Material, Scene, Sphere, Surface, Tetrahedron};
 
 /// A scene on its way, made by [`Scene::builder`].
@@ -73,5 +79,49 @@ impl SceneBuilder {
     pub fn tetrahedron(mut self, tetrahedron: Tetrahedron) -> SceneBuilder {
         self.tetrahedra.push(tetrahedron);
         self
+    }
+
+    /// The scene that was described.
+    ///
+    /// # Errors
+    /// As [`Scene::from_toml`], for the same numbers, with the same words and fields, and without a
+    /// line.
+    pub fn build(self) -> Result<Scene, SceneError> {
+        let SceneBuilder {
+            background,
+            surface,
+            light,
+            material,
+            spheres,
+            tetrahedra,
+        } = self;
+        check_count(spheres.len(), tetrahedra.len())?;
+        let background = check_background(background)?;
+        let light = check_light(light)?;
+        let material = check_material(material)?;
+        let surface = surface.map(check_surface).transpose()?;
+        let spheres = spheres.into_iter().enumerate();
+        let spheres: Vec<_> = spheres
+            .map(|(number, sphere)| check_sphere(number, sphere))
+            .collect::<Result<_, _>>()?;
+        let tetrahedra = tetrahedra.into_iter().enumerate();
+        let (tetrahedra, right_handed): (Vec<_>, _) = tetrahedra
+            .map(|(number, tetrahedron)| check_tetrahedron(number, tetrahedron))
+            .collect::<Result<_, _>>()?;
+        let facts = Facts::new(
+            &spheres,
+            (&tetrahedra, right_handed),
+            surface.as_ref(),
+            light.scaled_direction(),
+        );
+        Ok(Scene {
+            background,
+            surface,
+            light,
+            material,
+            spheres,
+            tetrahedra,
+            facts,
+        })
     }
 }

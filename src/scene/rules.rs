@@ -5,62 +5,15 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::builder::SceneBuilder;
 use super::error::SceneError;
-use super::exact::{Facts, orientation};
-use super::{Light, Material, Scene, Sphere, Surface, Tetrahedron};
+use super::exact::orientation;
+use super::{Light, Material, Sphere, Surface, Tetrahedron};
 
 /// The most solids that a scene can have.
 pub const MAX_SOLIDS: usize = 4096;
 
 /// The smallest and the largest magnitude of a number that is not 0.
 const MAGNITUDES: RangeInclusive<f64> = 1e-30..=1e6;
-
-impl SceneBuilder {
-    /// The scene that was described.
-    ///
-    /// # Errors
-    /// As [`Scene::from_toml`], for the same numbers, with the same words and fields, and without a
-    /// line.
-    pub fn build(self) -> Result<Scene, SceneError> {
-        let SceneBuilder {
-            background,
-            surface,
-            light,
-            material,
-            spheres,
-            tetrahedra,
-        } = self;
-        check_count(spheres.len(), tetrahedra.len())?;
-        let background = triple("background", background, amount)?;
-        let light = check_light(light)?;
-        let material = check_material(material)?;
-        let surface = surface.map(check_surface).transpose()?;
-        let spheres = spheres.into_iter().enumerate();
-        let spheres: Vec<_> = spheres
-            .map(|(number, sphere)| check_sphere(number, sphere))
-            .collect::<Result<_, _>>()?;
-        let tetrahedra = tetrahedra.into_iter().enumerate();
-        let (tetrahedra, right_handed): (Vec<_>, _) = tetrahedra
-            .map(|(number, tetrahedron)| check_tetrahedron(number, tetrahedron))
-            .collect::<Result<_, _>>()?;
-        let facts = Facts::new(
-            &spheres,
-            (&tetrahedra, right_handed),
-            surface.as_ref(),
-            light.scaled_direction(),
-        );
-        Ok(Scene {
-            background,
-            surface,
-            light,
-            material,
-            spheres,
-            tetrahedra,
-            facts,
-        })
-    }
-}
 
 /// The refusal of a field, such as `sphere[1].center[0]`.
 fn refusal(field: String, problem: impl Into<String>) -> SceneError {
@@ -71,7 +24,7 @@ fn refusal(field: String, problem: impl Into<String>) -> SceneError {
     }
 }
 
-fn check_count(spheres: usize, tetrahedra: usize) -> Result<(), SceneError> {
+pub(super) fn check_count(spheres: usize, tetrahedra: usize) -> Result<(), SceneError> {
     let count = spheres + tetrahedra;
     if count <= MAX_SOLIDS {
         return Ok(());
@@ -84,7 +37,11 @@ fn check_count(spheres: usize, tetrahedra: usize) -> Result<(), SceneError> {
     Err(refusal(field, problem))
 }
 
-fn check_light(light: Light) -> Result<Light, SceneError> {
+pub(super) fn check_background(background: DVec3) -> Result<DVec3, SceneError> {
+    triple("background", background, amount)
+}
+
+pub(super) fn check_light(light: Light) -> Result<Light, SceneError> {
     Ok(Light {
         direction: direction(light.direction)
             .map_err(|problem| refusal("light.direction".to_owned(), problem))?,
@@ -93,7 +50,7 @@ fn check_light(light: Light) -> Result<Light, SceneError> {
     })
 }
 
-fn check_material(material: Material) -> Result<Material, SceneError> {
+pub(super) fn check_material(material: Material) -> Result<Material, SceneError> {
     Ok(Material {
         ambient: triple("material.ambient", material.ambient, amount)?,
         diffuse: triple("material.diffuse", material.diffuse, amount)?,
@@ -111,7 +68,7 @@ pub(super) fn no_exponent(given: impl Display) -> SceneError {
     refusal("material.exponent".to_owned(), problem)
 }
 
-fn check_surface(surface: Surface) -> Result<Surface, SceneError> {
+pub(super) fn check_surface(surface: Surface) -> Result<Surface, SceneError> {
     Ok(Surface {
         height: number("surface.height", surface.height, coordinate)?,
         half_width: number("surface.half_width", surface.half_width, length)?,
@@ -120,7 +77,7 @@ fn check_surface(surface: Surface) -> Result<Surface, SceneError> {
     })
 }
 
-fn check_sphere(index: usize, sphere: Sphere) -> Result<Sphere, SceneError> {
+pub(super) fn check_sphere(index: usize, sphere: Sphere) -> Result<Sphere, SceneError> {
     let field = |name| move || format!("sphere[{index}].{name}");
     Ok(Sphere {
         center: triple(field("center"), sphere.center, coordinate)?,
@@ -130,7 +87,7 @@ fn check_sphere(index: usize, sphere: Sphere) -> Result<Sphere, SceneError> {
 }
 
 /// The tetrahedron, and whether its edges 0→1, 0→2, 0→3 are right-handed.
-fn check_tetrahedron(
+pub(super) fn check_tetrahedron(
     index: usize,
     tetrahedron: Tetrahedron,
 ) -> Result<(Tetrahedron, bool), SceneError> {

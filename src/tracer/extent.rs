@@ -221,8 +221,11 @@ impl Extent {
 
 /// The half-open part of a range that lies in a picture.
 fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
-    let limit = |number: i64| number.clamp(0, size.into()) as u32;
-    (limit(*range.start()), limit(range.end().saturating_add(1)))
+    let clamped = |number: i64| number.clamp(0, size.into()) as u32;
+    (
+        clamped(*range.start()),
+        clamped(range.end().saturating_add(1)),
+    )
 }
 
 impl<'f> Extents<'f> {

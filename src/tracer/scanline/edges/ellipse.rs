@@ -12,17 +12,17 @@ use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL};
 
-/// The pixels where (X − `center`)² + m² ≤ `squared_radius`, with a center and an m that are linear
+/// The pixels where (X − `middle`)² + m² ≤ `squared_radius`, with a middle and an m that are linear
 /// functions of Y: an ellipse, with a horizontal chord in every row.
 pub(crate) struct Ellipse {
     /// The middle of the chord at Y = 0, and how it moves with Y.
-    center: (f64, f64),
+    middle: (f64, f64),
     /// m of each row.
     pub(crate) m: RowOffset,
     /// The square of half the longest chord.
     pub(crate) squared_radius: f64,
     /// The largest |m| of a row that the ellipse may reach.
-    limit: f64,
+    max_m: f64,
     /// A bound on the error of m.
     pub(crate) m_error: f64,
     /// A bound on the error of the square of half a chord.
@@ -120,7 +120,7 @@ impl<'s> ParallelLines<'s> {
 
 impl Ellipse {
     fn new(
-        center: (Bounded, Bounded),
+        middle: (Bounded, Bounded),
         m: (Bounded, Bounded),
         squared_radius: Bounded,
         grid: Grid,
@@ -143,39 +143,39 @@ impl Ellipse {
         // bound on the error, and farther away because the slope is right to a quarter. If the
         // slope is not, every row is in doubt.
         let is_steep = slope.error() < slope.value().abs() / 4.0;
-        let limit = if is_steep {
+        let max_m = if is_steep {
             (radius + m_error) * INFLATION
         } else {
             f64::INFINITY
         };
         // |(m + ε)² − m²| ≤ 2|m|ε + ε², and squaring and subtracting round by u of what they give.
         let chord_error = (squared_radius.error()
-            + (2.0 * limit + m_error) * m_error
-            + 2.0 * U * (limit * limit + squared_radius.value().abs()))
+            + (2.0 * max_m + m_error) * m_error
+            + 2.0 * U * (max_m * max_m + squared_radius.value().abs()))
             * INFLATION;
         // The chord's half is at most the radius. Its root, the sum with the middle, a third of it
         // and the sum with N/2 round by less than u of |middle| + radius + N each.
-        let middle = center.0.value().abs() + center.1.value().abs() * max;
-        let slack = (error(center) + 16.0 * U * (middle + radius + max)) * INFLATION;
+        let largest = middle.0.value().abs() + middle.1.value().abs() * max;
+        let slack = (error(middle) + 16.0 * U * (largest + radius + max)) * INFLATION;
         let all = [
-            center.0.value(),
-            center.1.value(),
+            middle.0.value(),
+            middle.1.value(),
             slope.value(),
             zero.value(),
             squared_radius.value(),
-            limit,
+            max_m,
             chord_error,
             slack,
         ];
         Ellipse {
             is_bounded: all.iter().all(|x| x.is_finite()),
-            center: (center.0.value(), center.1.value()),
+            middle: (middle.0.value(), middle.1.value()),
             m: RowOffset {
                 slope: slope.value(),
                 zero: zero.value(),
             },
             squared_radius: squared_radius.value(),
-            limit,
+            max_m,
             m_error,
             chord_error,
             slack,
@@ -216,9 +216,9 @@ impl Ellipse {
         let m = self.m.of_rows::<S>(y);
         let squared = -(m * m) + self.squared_radius;
         let (upper, lower) = (squared + self.chord_error, squared - self.chord_error);
-        let is_met = m.abs().simd_le(self.limit) & upper.simd_ge(zero);
+        let is_met = m.abs().simd_le(self.max_m) & upper.simd_ge(zero);
         let is_certain = is_met & lower.simd_gt(zero);
-        let middle = y * self.center.1 + self.center.0;
+        let middle = y * self.middle.1 + self.middle.0;
         // m is no NaN here. Where it is infinite, the row misses the ellipse.
         let half = upper.max(zero).sqrt();
         let from = in_columns::<S>(grid, middle - half) - self.slack;
@@ -255,7 +255,7 @@ impl Ellipse {
 
     /// The half-open range of the rows that the ellipse may reach.
     pub(crate) fn rows(&self, grid: Grid) -> (u32, u32) {
-        let ends = [-self.limit, self.limit].map(|m| self.m.zero + m / self.m.slope);
+        let ends = [-self.max_m, self.max_m].map(|m| self.m.zero + m / self.m.slope);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         if low.is_finite() && high.is_finite() {
             grid.between(low, high)

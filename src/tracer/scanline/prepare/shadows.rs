@@ -158,10 +158,12 @@ pub(crate) fn casters_on<'f>(
             Solid::Sphere(sphere) if sphere.support == support => None,
             Solid::Sphere(sphere) => {
                 let (moment, before) = constants.moment(sphere.center, &to_light, &own);
-                let limit = to_light.squared_length * sphere.radius.squared();
-                Some(Caster::Sphere(
-                    arena.alloc(ShadowCylinder::new(before, moment, limit)),
-                ))
+                let squared_radius = to_light.squared_length * sphere.radius.squared();
+                Some(Caster::Sphere(arena.alloc(ShadowCylinder::new(
+                    before,
+                    moment,
+                    squared_radius,
+                ))))
             }
             Solid::Tetrahedron(t) => {
                 let ahead = t.solid.ahead(&t.light_edges);

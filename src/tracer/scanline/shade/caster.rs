@@ -20,8 +20,8 @@ pub(crate) struct ShadowCylinder {
     /// The components of the moment (p − c) × l.
     pub(crate) moment: [LinearForm; 3],
     /// |l|² R².
-    pub(crate) limit: f64,
-    /// A bound on the error of the difference of `limit` and the squared moment.
+    pub(crate) squared_radius: f64,
+    /// A bound on the error of the difference of `squared_radius` and the squared moment.
     pub(crate) error: f64,
 }
 
@@ -40,7 +40,8 @@ impl Caster<'_> {
                     }
                 };
                 let [x, y, z] = &cylinder.moment;
-                let upper = cylinder.limit - (min_square(x) + min_square(y) + min_square(z));
+                let upper =
+                    cylinder.squared_radius - (min_square(x) + min_square(y) + min_square(z));
                 upper < -cylinder.error || cylinder.before.is_negative(hits)
             }
         }
@@ -51,7 +52,7 @@ impl ShadowCylinder {
     pub(crate) fn new(
         before: LinearForm,
         moment: [LinearForm; 3],
-        limit: Bounded,
+        squared_radius: Bounded,
     ) -> ShadowCylinder {
         let magnitudes: f64 = moment
             .iter()
@@ -63,11 +64,13 @@ impl ShadowCylinder {
             .iter()
             .map(|form| (2.0 * form.magnitude + form.error) * form.error)
             .sum();
-        let error = (limit.error() + carried + 8.0 * U * (magnitudes + limit.value())) * INFLATION;
+        let error =
+            (squared_radius.error() + carried + 8.0 * U * (magnitudes + squared_radius.value()))
+                * INFLATION;
         ShadowCylinder {
             before,
             moment,
-            limit: limit.value(),
+            squared_radius: squared_radius.value(),
             error,
         }
     }

@@ -97,7 +97,8 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                     self.value(y, hits),
                     self.value(z, hits),
                 ];
-                let inside = splat::<S, P>(self.simd, cylinder.limit) - (x * x + y * y + z * z);
+                let inside =
+                    splat::<S, P>(self.simd, cylinder.squared_radius) - (x * x + y * y + z * z);
                 let (inside, outside) = P::is_inside(inside, cylinder.error);
                 // A caster abreast of the hit casts no shadow on it.
                 let before = &cylinder.before;

@@ -58,7 +58,7 @@ pub(crate) struct Highlight {
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(crate) threshold: f64,
     /// 1 − n·h at the threshold.
-    pub(crate) limit: f64,
+    pub(crate) one_minus_threshold: f64,
     /// A bound on |n − h| where a highlight can be seen.
     pub(crate) max_distance: f64,
     /// |n − h| where a highlight is steepest.
@@ -90,7 +90,7 @@ impl Lighting {
             highlight: Highlight {
                 exponent,
                 threshold,
-                limit: -libm::expm1(CUT / n),
+                one_minus_threshold: -libm::expm1(CUT / n),
                 // 1 − n·h = |n − h|²/2.
                 max_distance: (2.0 * (1.0 - threshold)).sqrt() * INFLATION,
                 steepest: 1.0 / n.sqrt(),

@@ -188,7 +188,7 @@ impl HitBounds {
             // products, by u of what they give.
             let constant = n * (error * steepest / 2.0 + error * error + 2.0 * U) * INFLATION;
             let slope = n * (error / steepest + 16.0 * U) * INFLATION;
-            let is_small = constant + slope * highlight.limit < 1.0 / 64.0;
+            let is_small = constant + slope * highlight.one_minus_threshold < 1.0 / 64.0;
             if is_small {
                 [constant, slope]
             } else {

@@ -96,8 +96,8 @@ fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<
         let is_beyond = match view.solid(j) {
             Solid::Sphere(sphere) => {
                 let height = height(sphere.center);
-                let limit = sphere.radius.squared() * outward.squared_length();
-                is_positive(height) && is_positive(height.squared() - limit)
+                let squared_radius = sphere.radius.squared() * outward.squared_length();
+                is_positive(height) && is_positive(height.squared() - squared_radius)
             }
             Solid::Tetrahedron(other) => {
                 let mut heights = other.solid.vertices().map(height).into_iter();
