@@ -17,6 +17,7 @@ mod rational;
 mod rules;
 mod solid;
 
+use std::cmp::Ordering;
 use std::io::Read;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -80,6 +81,12 @@ pub struct Light {
 }
 
 impl Light {
+    /// The sign of the rise of rays to the light.
+    pub(crate) fn rise(&self) -> Ordering {
+        0.0.partial_cmp(&self.direction.y)
+            .unwrap_or(Ordering::Equal)
+    }
+
     /// The direction, times the power of two that makes its largest component at least 1 and less
     /// than 2: exactly the same direction, and its square neither overflows nor underflows.
     pub(crate) fn scaled_direction(&self) -> DVec3 {

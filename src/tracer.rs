@@ -4,8 +4,10 @@
 //! [`Kernel`] chooses the number, and what happens where it leaves a doubt. To be read in this
 //! order:
 //!
-//! - `kernel`, `decision`, `vector`, `line`: the kernels, what a pixel can show, points and rays;
-//! - `view_space`, `view`: view space, in which the scene and its mirror image are turned by α;
+//! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show, points
+//!   and rays;
+//! - `view_space`, `view_transform`, `view`: view space, into which the scene and its mirror image
+//!   are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
@@ -32,6 +34,7 @@ mod error;
 mod explain;
 mod extent;
 mod frame_work;
+mod half_space;
 mod kernel;
 mod ladder;
 mod line;
@@ -54,6 +57,7 @@ mod tetrahedron;
 mod vector;
 mod view;
 mod view_space;
+mod view_transform;
 
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;

@@ -13,6 +13,13 @@ pub(super) struct BoundingBall {
     pub(super) radius: f64,
 }
 
+impl BoundingBall {
+    /// More than what rounding takes from a distance between points of this ball and another one.
+    pub(super) fn slack(&self, other: &BoundingBall) -> f64 {
+        (self.center.abs() + other.center.abs()).element_sum() * (MARGIN - 1.0)
+    }
+}
+
 /// The bounding balls of all solids, spheres first.
 pub(super) fn bounding_balls(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<BoundingBall> {
     let of_sphere = |sphere: &Sphere| BoundingBall {

@@ -54,7 +54,7 @@ impl Casters {
             let BoundingBall { center, radius } = bounds[a];
             let other = &bounds[b];
             let between = other.center - center;
-            let slack = (other.center.abs() + center.abs()).element_sum() * (MARGIN - 1.0);
+            let slack = bounds[a].slack(other);
             let touching = (other.radius + radius) * MARGIN + slack;
             if between.cross(l).length_squared() > touching * touching * MARGIN {
                 return;

@@ -22,7 +22,7 @@ pub(super) fn enclosed(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bo
     each_overlapping_pair(&balls, DVec3::X, |a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
             let (small, large) = (&balls[inner], &balls[outer]);
-            let slack = (small.center.abs() + large.center.abs()).element_sum() * (MARGIN - 1.0);
+            let slack = small.slack(large);
             let distance = small.center.distance(large.center);
             // A tetrahedron may lie inside although its ball does not.
             let may = match (solid(inner), solid(outer)) {

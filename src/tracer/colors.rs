@@ -147,7 +147,7 @@ impl Colors<'_> {
     fn is_shared(&self, decision: Decision) -> bool {
         match decision {
             Decision::Solid(seen) | Decision::Mirrored(seen) => {
-                self.stage < Stage::Shading || seen.face.is_some() || seen.in_shadow
+                self.stage < Stage::Shading || !seen.is_lit_sphere()
             }
             _ => true,
         }

@@ -27,3 +27,11 @@ pub struct Seen {
     /// Whether the point is in shadow; false in the stages that have no shadows.
     pub in_shadow: bool,
 }
+
+impl Seen {
+    /// Whether it is a sphere in the light, whose pixels are shaded; all other pixels of one decision
+    /// have one colour.
+    pub(crate) fn is_lit_sphere(&self) -> bool {
+        self.face.is_none() && !self.in_shadow
+    }
+}

@@ -10,6 +10,7 @@ use super::line::{Hit, Line};
 use super::pixel::{Picture, Pixel};
 use super::vector::Vector;
 use super::view::{SolidKinds, View};
+use super::view_space::{EYE_SQUARED, from_middle, turn_back};
 use crate::image::display_byte;
 use crate::number::Real;
 use crate::scene::{Scene, Solid};
@@ -84,7 +85,7 @@ impl<R: Real> Picture<'_, R> {
     fn explain_ray(&self, text: &mut String, column: u32, row: u32) -> Result<(), R::Doubt> {
         let ray = self.transform.eye_ray(column, row);
         let half = f64::from(self.size) / 2.0;
-        let [u, v] = [column, row].map(|number| Short((f64::from(number) - half) / half));
+        let [u, v] = [column, row].map(|number| Short(from_middle(number, half) / half));
         say(text, "u, v", format!("{u}, {v}"));
         let e = ShortTriple(self.point(ray.origin));
         say(text, "e", format!("{e}  the pixel's place on the screen"));
@@ -108,7 +109,7 @@ impl<R: Real> Picture<'_, R> {
             } else {
                 "beside the square"
             };
-            let t = Short(self.in_scene(depth) * 109f64.sqrt());
+            let t = Short(self.in_scene(depth) * EYE_SQUARED.sqrt());
             let place = format!("{} {inside}", ShortTriple(self.point(point)));
             say(
                 text,
@@ -140,11 +141,7 @@ impl<R: Real> Picture<'_, R> {
                     .view
                     .casters(&self.view.ray_to_light(point, surface.square.support))?;
                 self.explain_shadow(text, "the surface", &casters);
-                let mirrored_ray = Line {
-                    origin: point,
-                    origin_support: Some(surface.square.support),
-                    ..ray
-                };
+                let mirrored_ray = surface.square.mirrored_ray(point);
                 if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {
                     let [x, y, z] = self.unit(ray.direction.vector);
                     let r = ShortTriple([x, -y, z]);
@@ -282,7 +279,7 @@ impl<R: Real> Picture<'_, R> {
 
     /// A length of view space in the scene's unit.
     fn in_scene(&self, length: R) -> f64 {
-        length.to_f64() / (1.5 * f64::from(self.size))
+        length.to_f64() / self.transform.scale.to_f64()
     }
 
     /// t of a hit, for a direction of length 1.
@@ -308,7 +305,8 @@ impl<R: Real> Picture<'_, R> {
 
     fn turned_back(&self, x: f64, y: f64, z: f64) -> [f64; 3] {
         let (sin, cos) = (self.transform.sin.to_f64(), self.transform.cos.to_f64());
-        [x * cos + z * sin, y, z * cos - x * sin]
+        let [x, z] = turn_back(sin, cos, Vector::new(x, y, z));
+        [x, y, z]
     }
 
     fn amounts(&self, v: Vector<R>) -> ShortTriple {

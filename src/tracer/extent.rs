@@ -7,7 +7,10 @@ use bumpalo::Bump;
 use super::arena::collect;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
-use super::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL, ViewTransform, from_middle, reflect};
+use super::view_space::{
+    EYE_SQUARED, EYE_Y, EYE_Z, PIXEL, along_eye_ray, coordinate, number_at, reflect,
+};
+use super::view_transform::ViewTransform;
 use crate::number::Bounded;
 use crate::scene::Scene;
 
@@ -124,7 +127,7 @@ impl<'f> ExtentsOfSolids<'f> {
 
     /// Y of a row.
     pub(super) fn y_of(&self, row: u32) -> f64 {
-        PIXEL * from_middle(row, self.half)
+        coordinate(row, self.half)
     }
 
     /// The extent of a solid.
@@ -204,10 +207,9 @@ impl Extent {
             let ends = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
                 (x.min(low), x.max(high))
             });
-            let number = |x: f64| x / PIXEL + half;
             let (low, high) = (
-                number(ends.0 - half_length - rounding),
-                number(ends.1 + half_length + rounding),
+                number_at(ends.0 - half_length - rounding, half),
+                number_at(ends.1 + half_length + rounding, half),
             );
             // A float beyond an i64 becomes the nearest one, which is far outside of any picture.
             low.floor() as i64..=high.ceil() as i64
@@ -249,10 +251,7 @@ impl<'f> Extents<'f> {
         let solids = |mirror_height: Option<f64>| {
             let point = |p| reflect(transform.point(p), mirror_height);
             let root = EYE_SQUARED.sqrt();
-            // (p − e)·d = 3 Y + 10 Z − (3 p_y + 10 p_z), and |d|² is 109.
-            let toward = |p: Vector<f64>| {
-                EYE_Z * PIXEL * f64::from(size) / 2.0 - (EYE_Y * p.y + EYE_Z * p.z)
-            };
+            let along = |p| along_eye_ray(p, f64::from(size) / 2.0);
             let spheres = scene.spheres().iter().map(|sphere| {
                 let center = point(sphere.center);
                 let radius = sphere.radius * transform.scale;
@@ -262,16 +261,16 @@ impl<'f> Extents<'f> {
                 SolidExtent {
                     extent: Extent::of(&[center], half, rounding, size),
                     entry: Entry {
-                        nearest: toward(center) - radius * root - 16.0 * rounding,
+                        nearest: along(center) - radius * root - 16.0 * rounding,
                         // Rays that touch the sphere enter it last.
-                        farthest: toward(center) + 16.0 * rounding,
+                        farthest: along(center) + 16.0 * rounding,
                     },
                 }
             });
             let tetrahedra = scene.tetrahedra().iter().map(|t| {
                 let vertices = t.vertices.map(point);
                 let rounding = rounding(&vertices, 0.0);
-                let depths = vertices.map(toward).into_iter();
+                let depths = vertices.map(along).into_iter();
                 SolidExtent {
                     extent: Extent::of(&vertices, (0.0, 0.0), rounding, size),
                     entry: Entry {

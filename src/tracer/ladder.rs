@@ -15,7 +15,7 @@ use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::vector::Vector;
 use super::view::FrameSigns;
-use super::view_space::ViewTransform;
+use super::view_transform::ViewTransform;
 use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real, Session};
 use crate::scene::Scene;
 use crate::stage::Stage;

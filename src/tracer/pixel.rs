@@ -13,7 +13,7 @@ use super::surface::Surface;
 use super::surface_casters::CastersOnSurface;
 use super::vector::Vector;
 use super::view::{FrameSigns, SolidKinds, View};
-use super::view_space::{ViewTransform, eye_direction};
+use super::view_transform::ViewTransform;
 use crate::number::{Real, all, any};
 use crate::scene::{Scene, Solid};
 use crate::stage::Stage;
@@ -238,11 +238,9 @@ impl<'f, R: Real> Picture<'f, R> {
         Ok(match hit {
             Some((solid, hit)) => {
                 let hit = rules.hit(&self.view, solid, &ray, hit)?;
-                let lit = self.stage == Stage::Shading && hit.face.is_none();
-                (
-                    Decision::Solid(seen(solid, &hit, false)),
-                    lit.then_some(hit.normal),
-                )
+                let seen = seen(solid, &hit, false);
+                let normal = normal_of(seen, &hit).filter(|_| self.stage == Stage::Shading);
+                (Decision::Solid(seen), normal)
             }
             None => (Decision::Background, None),
         })
@@ -298,12 +296,7 @@ impl<'f, R: Real> Picture<'f, R> {
             return Ok((Decision::SurfaceInShadow, None));
         }
         if let Some(mirror) = &surface.mirror {
-            // In the reflected scene, the mirrored ray is the continuation of the eye ray.
-            let ray = Line {
-                origin: point,
-                direction: eye_direction(),
-                origin_support: Some(surface.square.support),
-            };
+            let ray = surface.square.mirrored_ray(point);
             if let Some((solid, hit)) =
                 mirror
                     .view
@@ -385,7 +378,7 @@ fn seen<R>(solid: usize, hit: &Hit<R>, in_shadow: bool) -> Seen {
 
 /// The normal, if the colour depends on it: that of a sphere in the light.
 fn normal_of<R: Copy>(seen: Seen, hit: &Hit<R>) -> Option<Normal<R>> {
-    (seen.face.is_none() && !seen.in_shadow).then_some(hit.normal)
+    seen.is_lit_sphere().then_some(hit.normal)
 }
 
 /// The colours of the quadrants of Code 2-1, in the order of its branches.

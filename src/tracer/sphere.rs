@@ -3,7 +3,8 @@
 use std::cmp::Ordering;
 use std::iter;
 
-use super::line::{Hit, Line, Normal};
+use super::half_space::HalfSpace;
+use super::line::{Direction, Hit, Line, Normal};
 use super::vector::Vector;
 use crate::number::{Real, all};
 use crate::scene::Support;
@@ -19,7 +20,7 @@ pub(super) struct Sphere<R> {
 impl<R: Real> Sphere<R> {
     /// The moment (o − c) × d of a line about the centre: its length is |d| times the line's
     /// distance from the centre.
-    fn moment(&self, line: &Line<R>) -> Vector<R> {
+    pub(super) fn moment(&self, line: &Line<R>) -> Vector<R> {
         (line.origin - self.center).cross(line.direction.vector)
     }
 
@@ -73,18 +74,23 @@ impl<R: Real> Sphere<R> {
         Ok(Some(order.reverse()))
     }
 
+    /// The points from which rays of this direction move toward the centre.
+    pub(super) fn before(&self, direction: &Direction<R>) -> HalfSpace<R> {
+        HalfSpace {
+            normal: -direction.vector,
+            at: self.center,
+            closed: false,
+            border: None,
+        }
+    }
+
     /// Whether the ray from a point that is not inside the sphere meets it at some t > 0: the line
     /// meets it, and the ray moves toward the centre.
     pub(super) fn is_ahead(&self, ray: &Line<R>) -> Result<bool, R::Doubt> {
         if ray.origin_support == Some(self.support) {
             return Ok(false);
         }
-        let approaches = || {
-            (self.center - ray.origin)
-                .dot(ray.direction.vector)
-                .sign()
-                .map(Ordering::is_gt)
-        };
+        let approaches = || self.before(&ray.direction).holds(ray);
         let touches = || {
             self.discriminant(ray, self.moment(ray))
                 .sign()

@@ -2,9 +2,10 @@
 
 use std::cmp::Ordering;
 
+use super::half_space::HalfSpace;
 use super::line::Line;
-use super::tetrahedron::HalfSpace;
 use super::vector::Vector;
+use super::view_space::{eye_direction, turn_back};
 use crate::number::{Real, all};
 use crate::scene::Support;
 
@@ -27,10 +28,17 @@ pub(super) struct Surface<R> {
 impl<R: Real> Surface<R> {
     /// The coordinates along the square's sides of a level vector.
     pub(super) fn along_sides(&self, v: Vector<R>) -> [R; 2] {
-        [
-            v.x * self.cos + v.z * self.sin,
-            v.z * self.cos - v.x * self.sin,
-        ]
+        turn_back(self.sin, self.cos, v)
+    }
+
+    /// The mirrored ray from a point of the square. In the reflected scene it is the continuation of
+    /// the eye ray.
+    pub(super) fn mirrored_ray(&self, point: Vector<R>) -> Line<R> {
+        Line {
+            origin: point,
+            direction: eye_direction(),
+            origin_support: Some(self.support),
+        }
     }
 
     /// Four linear functions of X and Y that are not negative in the square, each as a constant and

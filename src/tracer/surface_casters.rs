@@ -1,7 +1,7 @@
 //! Which solids may stand between a pixel of the surface and the light.
 
 use super::surface::Surface;
-use super::view_space::ViewTransform;
+use super::view_transform::ViewTransform;
 use crate::number::{Bounded, Real};
 use crate::scene::{Scene, SurfaceCasters};
 

@@ -12,6 +12,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::half_space::HalfSpace;
 use super::line::{Direction, Hit, Line, Normal};
 use super::vector::Vector;
 use crate::number::{Real, all};
@@ -28,30 +29,6 @@ pub(super) struct Tetrahedron<R> {
     supports: [Support; 4],
     /// The sign of n·l for each face.
     facing_light: [Ordering; 4],
-}
-
-/// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
-pub(super) struct HalfSpace<R> {
-    /// Inward, of any length.
-    pub(super) normal: Vector<R>,
-    /// A point of the border.
-    pub(super) at: Vector<R>,
-    /// Whether the border belongs to the half-space.
-    pub(super) closed: bool,
-    /// The plane of the border, if rays may leave it.
-    pub(super) border: Option<Support>,
-}
-
-impl<R: Real> HalfSpace<R> {
-    /// Whether the line's origin is in the half-space. An origin on the border is recognised by its
-    /// support, without any arithmetic.
-    fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
-        if self.border.is_some() && self.border == line.origin_support {
-            return Ok(self.closed);
-        }
-        let sign = self.normal.dot(line.origin - self.at).sign()?;
-        Ok(sign.is_gt() || (self.closed && sign.is_eq()))
-    }
 }
 
 /// The edge functions of a tetrahedron for all lines of one direction d.
@@ -90,13 +67,9 @@ impl<R: Real> Tetrahedron<R> {
         supports: [Support; 4],
         facing_light: [Ordering; 4],
     ) -> Self {
-        let normals = FACES.map(|[a, b, c]| {
-            let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
-            if right_handed { normal } else { -normal }
-        });
         Tetrahedron {
             vertices,
-            normals,
+            normals: outward_normals(&vertices, right_handed),
             right_handed,
             supports,
             facing_light,
@@ -278,6 +251,14 @@ impl<R: Real> Tetrahedron<R> {
     }
 }
 
+/// The outward normals of the faces, of any length.
+fn outward_normals<R: Real>(vertices: &[Vector<R>; 4], right_handed: bool) -> [Vector<R>; 4] {
+    FACES.map(|[a, b, c]| {
+        let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+        if right_handed { normal } else { -normal }
+    })
+}
+
 /// The sign of n·d for each face of a tetrahedron of the scene, where plain f64 is certain of all
 /// of them. `right_handed` is as for [`Tetrahedron::new`]; the components of `d` are known to a
 /// relative error of 2u, and their magnitudes add up to less than 18.
@@ -291,19 +272,18 @@ pub(super) fn certain_face_signs(
     // A component of a normal is at most 8 m², and wrong by at most 32u m²; products and sums round
     // by at most 5u of what they give: 18 · (32 + 5 · 8) u m² is less than 2⁻⁴² m².
     let error = m * m / (1_u64 << 42) as f64;
+    let vertices = vertices.map(Vector::<f64>::exact);
     let mut face_signs = [Ordering::Equal; 4];
-    for (sign, [a, b, c]) in face_signs.iter_mut().zip(FACES) {
-        let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
-        let n_dot_d = normal.dot(d);
+    for (sign, normal) in face_signs
+        .iter_mut()
+        .zip(outward_normals(&vertices, right_handed))
+    {
+        let n_dot_d = normal.dot(Vector::exact(d));
         let is_certain = n_dot_d.abs() > error;
         if !is_certain {
             return None;
         }
-        *sign = if (n_dot_d > 0.0) == right_handed {
-            Ordering::Greater
-        } else {
-            Ordering::Less
-        };
+        *sign = n_dot_d.total_cmp(&0.0);
     }
     Some(face_signs)
 }
@@ -340,7 +320,8 @@ mod tests {
     use crate::number::DoubleDouble;
     use crate::random::Random;
     use crate::scene::Scene;
-    use crate::tracer::view_space::{ViewTransform, eye_direction};
+    use crate::tracer::view_space::eye_direction;
+    use crate::tracer::view_transform::ViewTransform;
 
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]

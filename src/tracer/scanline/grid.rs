@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::view_space::{PIXEL, from_middle};
+use crate::tracer::view_space::{self, PIXEL, number_at};
 
 /// Rows are crossed so many at a time.
 pub(in crate::tracer) const ROWS: usize = 8;
@@ -32,10 +32,10 @@ impl Grid {
         }
     }
 
-    /// X or Y of a column or row: a whole or half number below 2¹⁶, exactly.
+    /// X of a column, or Y of a row.
     #[inline]
     pub(crate) fn coordinate(&self, number: u32) -> f64 {
-        PIXEL * from_middle(number, self.half)
+        view_space::coordinate(number, self.half)
     }
 
     /// The first column at or after each position, given in columns: a whole number.
@@ -65,8 +65,8 @@ impl Grid {
     /// The columns or rows whose X or Y may lie between two bounds.
     pub(crate) fn between(&self, low: f64, high: f64) -> Columns {
         // One more on either side is far more than rounding takes.
-        let number = |coordinate: f64| self.half + coordinate / PIXEL;
-        (self.ceil(number(low) - 1.0), self.count(number(high) + 1.0))
+        let [low, high] = [low, high].map(|coordinate| number_at(coordinate, self.half));
+        (self.ceil(low - 1.0), self.count(high + 1.0))
     }
 
     /// The number of columns at or before a position given in columns.

@@ -5,12 +5,13 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
-use crate::tracer::line::Direction;
+use crate::tracer::line::{Direction, Line};
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
+use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
-use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, PIXEL};
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, number_at};
 
 /// The pixels where (X − `middle`)² + m² ≤ `squared_radius`, with a middle and an m that are linear
 /// functions of Y: an ellipse, with a horizontal chord in every row.
@@ -57,15 +58,15 @@ impl RowOffset {
 pub(crate) struct ParallelLines<'s> {
     plane: &'s PixelPlane,
     direction: Direction<Bounded>,
-    /// The change of a line's moment from one column to the next.
+    /// The change of a line's moment where X grows by 1.
     per_column: Vector<Bounded>,
     /// The squared length of `per_column`.
     squared_per_column: Bounded,
     /// The direction of the shortest moment of a row, over the length of `per_column`.
     shortest: Vector<Bounded>,
-    /// The change of the chord's middle from one row to the next.
+    /// The change of the chord's middle where Y grows by 1.
     middle_per_row: Bounded,
-    /// The change of m from one row to the next.
+    /// The change of m where Y grows by 1.
     m_per_row: Bounded,
     /// The product of this vector with a point, seen from the plane's origin, is Y of the pixel
     /// whose line passes through the point.
@@ -106,13 +107,17 @@ impl<'s> ParallelLines<'s> {
     }
 
     /// The pixels whose lines meet a sphere: |(p − c) × l|² ≤ |l|² R².
-    pub(crate) fn meet(&self, (center, radius): (Vector<Bounded>, Bounded), grid: Grid) -> Ellipse {
-        let moment = (self.plane.origin - center).cross(self.direction.vector);
+    pub(crate) fn meet(&self, sphere: &Sphere<Bounded>, grid: Grid) -> Ellipse {
+        let moment = sphere.moment(&Line {
+            origin: self.plane.origin,
+            direction: self.direction,
+            origin_support: None,
+        });
         let middle = -(moment.dot(self.per_column) / self.squared_per_column);
         Ellipse::new(
             (middle, self.middle_per_row),
             (moment.dot(self.shortest), self.m_per_row),
-            self.direction.squared_length * radius.squared() / self.squared_per_column,
+            self.direction.squared_length * sphere.radius.squared() / self.squared_per_column,
             grid,
         )
     }
@@ -246,7 +251,7 @@ impl Ellipse {
     pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let ColumnEnclosure { possible, certain } =
             dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
-        let column = grid.half + x / PIXEL;
+        let column = number_at(x, grid.half);
         if column < possible[0] || column > possible[1] {
             return Some(false);
         }

@@ -5,11 +5,11 @@ use fearless_simd::prelude::*;
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
+use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::tetrahedron::HalfSpace;
-use crate::tracer::view_space::PIXEL;
+use crate::tracer::view_space::{PIXEL, number_at};
 
 /// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
 #[derive(Clone, Copy)]
@@ -131,7 +131,7 @@ impl HalfPlane {
             Border::Right(root) => (root, false),
             Border::Level { .. } => return self.decide(x, y),
         };
-        let beyond = grid.half + x / PIXEL - (y * root.per_row + root.at);
+        let beyond = number_at(x, grid.half) - (y * root.per_row + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
             Some((beyond > 0.0) == rightward)
         } else {

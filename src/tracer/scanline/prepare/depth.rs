@@ -3,16 +3,16 @@
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::scene::Support;
+use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
-use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, eye_direction};
+use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, along_eye_ray, eye_direction};
 
 /// The parameter at which eye rays enter a solid.
 pub(crate) enum Depth<'f> {
-    /// g/109 − s/√109, with s² = R² − m² − q² as in `shade/sphere.rs`.
+    /// g/109 − s/√109, with g = (c − o)·d, and s² = R² − m² − q² as in `shade/sphere.rs`.
     Sphere {
         /// m of each row.
         m: RowOffset,
@@ -134,9 +134,7 @@ impl Depth<'_> {
         support: Support,
         grid: Grid,
     ) -> Depth<'static> {
-        let [three, ten] = [EYE_Y, EYE_Z].map(Bounded::exact);
-        // (c − o) · d with o = (X, Y, Z), d = −(0, 3, 10): 3 (Y − c_y) + 10 (Z − c_z).
-        let constant = ten * (Bounded::exact(grid.max) - center.z) - three * center.y;
+        let constant = along_eye_ray(center, grid.half);
         let magnitude = constant.value().abs() + EYE_Y * grid.max;
         let q = center.x.error() + 2.0 * U * (center.x.value().abs() + grid.max);
         let radius = outline.squared_radius.max(0.0).sqrt() * INFLATION;

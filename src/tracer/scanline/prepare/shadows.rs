@@ -8,6 +8,7 @@ use bumpalo::Bump;
 use crate::number::{Bounded, Real};
 use crate::scene::{Side, Solid};
 use crate::tracer::arena::collect;
+use crate::tracer::half_space::HalfSpace;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
@@ -18,7 +19,6 @@ use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants};
 use crate::tracer::surface::Surface;
-use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
@@ -40,13 +40,12 @@ impl<'p> SurfaceShadow<'p> {
         view: &View<'_, Bounded>,
         mirrored: bool,
     ) -> Self {
-        let rise = -picture.scene.light().direction.y;
-        let rise = if mirrored { -rise } else { rise };
+        let rise = picture.scene.light().rise();
         SurfaceShadow {
             surface: picture.surface.as_ref().map(|surface| &surface.square),
             sides: &picture.scene.facts().sides,
             to_light: view.shading.to_light.vector,
-            rise: rise.partial_cmp(&0.0).unwrap_or(Ordering::Equal),
+            rise: if mirrored { rise.reverse() } else { rise },
             mirrored,
         }
     }
@@ -113,16 +112,11 @@ pub(crate) fn shadows_on<'f>(
         let is_ahead = is_ahead(caster);
         match view.solid(caster) {
             Solid::Sphere(sphere) => {
-                let before = (!is_ahead).then(|| HalfSpace {
-                    normal: -to_light.vector,
-                    at: sphere.center,
-                    closed: false,
-                    border: None,
-                });
+                let before = (!is_ahead).then(|| sphere.before(&to_light));
                 let before = before
                     .iter()
                     .map(|half_space| HalfPlane::of(half_space, plane, grid));
-                let ellipse = lines.meet((sphere.center, sphere.radius), grid);
+                let ellipse = lines.meet(sphere, grid);
                 Region::new(collect(arena, before), Some(ellipse), grid)
             }
             Solid::Tetrahedron(t) => {

@@ -78,7 +78,7 @@ impl<'f> PreparedSurface<'f> {
         let magnitude = height.value().abs() + grid.max;
         // A ray to the light that rises from the surface has all solids above the surface ahead. A
         // solid that touches the ray's origin is seen there itself, and not the surface.
-        let rises = scene.light().direction.y < 0.0;
+        let rises = scene.light().rise().is_gt();
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let depth = LevelDepth {
             constant: -height.value(),

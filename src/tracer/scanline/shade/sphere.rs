@@ -12,11 +12,11 @@ use std::cmp::Ordering;
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
+use crate::tracer::half_space::HalfSpace;
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::shade::light::{Highlight, Lighting};
 use crate::tracer::sphere::Sphere;
-use crate::tracer::tetrahedron::HalfSpace;
 use crate::tracer::vector::Vector;
 
 /// The zones of a sphere, from the middle of its outline to the rim: s ≥ R/8, s ≥ R/128, and s ≥

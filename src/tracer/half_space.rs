@@ -1,0 +1,30 @@
+//! Half-spaces, and which lines begin in them.
+
+use super::line::Line;
+use super::vector::Vector;
+use crate::number::Real;
+use crate::scene::Support;
+
+/// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
+pub(super) struct HalfSpace<R> {
+    /// Inward, of any length.
+    pub(super) normal: Vector<R>,
+    /// A point of the border.
+    pub(super) at: Vector<R>,
+    /// Whether the border belongs to the half-space.
+    pub(super) closed: bool,
+    /// The plane of the border, if rays may leave it.
+    pub(super) border: Option<Support>,
+}
+
+impl<R: Real> HalfSpace<R> {
+    /// Whether the line's origin is in the half-space. An origin on the border is recognised by its
+    /// support, without any arithmetic.
+    pub(super) fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
+        if self.border.is_some() && self.border == line.origin_support {
+            return Ok(self.closed);
+        }
+        let sign = self.normal.dot(line.origin - self.at).sign()?;
+        Ok(sign.is_gt() || (self.closed && sign.is_eq()))
+    }
+}
