@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use bumpalo::Bump;
 
 use super::arena::collect;
-use super::surface_casters::CastersOnSurface;
+use super::surface_casters::SurfaceCasterLookup;
 use super::vector::Vector;
 use super::view_space::{
     EYE_SQUARED, EYE_Y, EYE_Z, PIXEL, along_eye_ray, coordinate, number_at, reflect,
@@ -28,7 +28,7 @@ pub(super) struct Extents<'f> {
     pub(super) direct: ExtentsOfSolids<'f>,
     pub(super) mirrored: ExtentsOfSolids<'f>,
     pub(super) surface: Option<Extent>,
-    pub(super) casters_on_surface: Option<CastersOnSurface<'f>>,
+    pub(super) casters_on_surface: Option<SurfaceCasterLookup<'f>>,
 }
 
 /// The extents of all solids, and which of them reach each tile of the screen, the nearest first.
@@ -302,7 +302,7 @@ impl<'f> Extents<'f> {
             direct: solids(None),
             mirrored,
             surface,
-            casters_on_surface: CastersOnSurface::new(scene, bounded),
+            casters_on_surface: SurfaceCasterLookup::new(scene, bounded),
         }
     }
 }

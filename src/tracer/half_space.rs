@@ -14,14 +14,14 @@ pub(super) struct HalfSpace<R> {
     /// Whether the border belongs to the half-space.
     pub(super) closed: bool,
     /// The plane of the border, if rays may leave it.
-    pub(super) border: Option<Support>,
+    pub(super) support: Option<Support>,
 }
 
 impl<R: Real> HalfSpace<R> {
     /// Whether the line's origin is in the half-space. An origin on the border is recognised by its
     /// support, without any arithmetic.
     pub(super) fn holds(&self, line: &Line<R>) -> Result<bool, R::Doubt> {
-        if self.border.is_some() && self.border == line.origin_support {
+        if self.support.is_some() && self.support == line.origin_support {
             return Ok(self.closed);
         }
         let sign = self.normal.dot(line.origin - self.at).sign()?;

@@ -157,8 +157,8 @@ impl Rules<f64> for MistakenRules<'_, '_> {
             || own_shadow
             || surface.includes_light_side() && by_surface(&to_light)?
             || surface.includes_far_side() && by_surface(&away)?
-            || solids.includes_light_side() && is_shaded(view, &to_light, Some(solid))?
-            || solids.includes_far_side() && is_shaded(reversed, &away, Some(solid))?)
+            || solids.includes_light_side() && is_in_shadow(view, &to_light, Some(solid))?
+            || solids.includes_far_side() && is_in_shadow(reversed, &away, Some(solid))?)
     }
 
     fn surface_is_in_shadow(
@@ -172,8 +172,8 @@ impl Rules<f64> for MistakenRules<'_, '_> {
         let to_light = picture.view.ray_to_light(point, support);
         let away = self.reversed.view.ray_to_light(point, support);
         Ok(
-            solids.includes_light_side() && is_shaded(&picture.view, &to_light, None)?
-                || solids.includes_far_side() && is_shaded(&self.reversed.view, &away, None)?,
+            solids.includes_light_side() && is_in_shadow(&picture.view, &to_light, None)?
+                || solids.includes_far_side() && is_in_shadow(&self.reversed.view, &away, None)?,
         )
     }
 }
@@ -189,7 +189,7 @@ impl Toward {
 }
 
 /// Whether any solid but this one stands between the ray's origin and the light of a view.
-fn is_shaded(
+fn is_in_shadow(
     view: &View<'_, f64>,
     ray: &Line<f64>,
     but: Option<usize>,

@@ -10,7 +10,7 @@ use super::decision::{Decision, Seen};
 use super::extent::{Extent, Extents};
 use super::line::{Hit, Line, Normal};
 use super::surface::Surface;
-use super::surface_casters::CastersOnSurface;
+use super::surface_casters::SurfaceCasterLookup;
 use super::vector::Vector;
 use super::view::{FrameSigns, SolidKinds, View};
 use super::view_transform::ViewTransform;
@@ -35,7 +35,7 @@ pub(super) struct SeenSurface<'f, R> {
     pub(super) square: Surface<R>,
     /// The pixels that may show it.
     pub(super) extent: Extent,
-    casters: CastersOnSurface<'f>,
+    casters: SurfaceCasterLookup<'f>,
     color: Vector<R>,
     pub(super) mirror: Option<Mirror<'f, R>>,
 }

@@ -100,9 +100,9 @@ use visibility::coverage::Coverage;
 use visibility::depth_test::DepthTester;
 use visibility::resolve::visible;
 use visibility::visible::{DepthTests, Shown, Visible};
-use write::band::BandWriter;
 pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
+use write::row_writer::RowWriter;
 
 /// The mean number of solids behind a pixel from which on culling pays.
 const CULL_FROM: u64 = 4;
@@ -169,12 +169,12 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch: &mut Scratch,
         progress: &Progress,
     ) -> Tally {
-        let mut writer = BandWriter {
+        let mut writer = RowWriter {
             level: self.level,
             precision: self.precision,
             grid: self.frame.grid,
             first: rows.start,
-            number: rows.start,
+            row: rows.start,
             y: 0.0,
             samples,
             decisions,
@@ -187,7 +187,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             if progress.is_cancelled() {
                 break;
             }
-            writer.number = number;
+            writer.row = number;
             writer.y = self.frame.grid.coordinate(number);
             match &self.frame.quadrants {
                 Some(quadrants) => self.trace_quadrants(&mut writer, quadrants),
@@ -204,19 +204,19 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     }
 
     /// Code 2-1, in which the left half of a row shows one quadrant and the right half another.
-    fn trace_quadrants<'r>(&'r self, writer: &mut BandWriter<'r>, quadrants: &[PaintNumber; 4]) {
+    fn trace_quadrants<'r>(&'r self, writer: &mut RowWriter<'r>, quadrants: &[PaintNumber; 4]) {
         let size = self.frame.grid.size;
         let middle = (size / 2 + 1).min(size);
         for columns in [(0, middle), (middle, size)] {
             if columns.0 < columns.1 {
-                let paint = quadrants[usize::from(quadrant(columns.0, writer.number, size))];
+                let paint = quadrants[usize::from(quadrant(columns.0, writer.row, size))];
                 writer.fill(columns, &self.frame.paints[paint]);
                 writer.tally.spans += 1;
             }
         }
     }
 
-    fn trace_row<'r>(&'r self, writer: &mut BandWriter<'r>, scratch: &mut Scratch) {
+    fn trace_row<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
         let frame = &self.frame;
         let Scratch {
             active,
@@ -230,7 +230,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         }
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
         active.enter(
-            writer.number,
+            writer.row,
             &frame.edge_table,
             self.level,
             frame.grid,
@@ -240,12 +240,12 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         writer.tally.spans += active.len() as u64;
         let mut from = 0;
         for span in 0..active.len() {
-            let (to, visible) = active.span(span, writer.number);
+            let (to, visible) = active.span(span, writer.row);
             match visible {
                 // The span has no columns in this row, but may have some in the next.
                 _ if from == to => {}
                 Visible::Only(shows) => self.write(writer, (from, to), shows, shader),
-                Visible::First(_) => {
+                Visible::DepthTest(_) => {
                     let columns = (from, to);
                     let parts = depth_tester.test(frame, depth_tests, visible, writer.y, columns);
                     for (columns, shows) in parts {
@@ -260,7 +260,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     /// Writes columns that all show the same.
     fn write<'r>(
         &'r self,
-        writer: &mut BandWriter<'r>,
+        writer: &mut RowWriter<'r>,
         columns: Columns,
         shows: Shown,
         shader: &mut SpanShader,

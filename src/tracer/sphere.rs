@@ -80,7 +80,7 @@ impl<R: Real> Sphere<R> {
             normal: -direction.vector,
             at: self.center,
             closed: false,
-            border: None,
+            support: None,
         }
     }
 

@@ -92,7 +92,7 @@ impl<R: Real> Surface<R> {
             normal,
             at,
             closed,
-            border: Some(self.support),
+            support: Some(self.support),
         };
         let (bounds, sides) = match rise {
             Ordering::Equal => ([Some(before(up, true)), Some(before(-up, true))], None),
@@ -113,7 +113,7 @@ impl<R: Real> Surface<R> {
                     normal: up * side.dot(l) - side * l.y,
                     at: at + side * self.half_width,
                     closed: true,
-                    border: None,
+                    support: None,
                 })
         });
         bounds.into_iter().flatten().chain(sides)

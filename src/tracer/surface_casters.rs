@@ -7,7 +7,7 @@ use crate::scene::{Scene, SurfaceCasters};
 
 /// Finds the casters of the surface at a pixel, from the pixel's point in f64 with bounds.
 #[derive(Clone, Copy)]
-pub(super) struct CastersOnSurface<'f> {
+pub(super) struct SurfaceCasterLookup<'f> {
     casters: &'f SurfaceCasters,
     surface: Surface<Bounded>,
     /// 1 over the frame's scale.
@@ -15,10 +15,10 @@ pub(super) struct CastersOnSurface<'f> {
     transform: ViewTransform<Bounded>,
 }
 
-impl<'f> CastersOnSurface<'f> {
+impl<'f> SurfaceCasterLookup<'f> {
     /// `None` where there is no surface.
     pub(super) fn new(scene: &'f Scene, transform: &ViewTransform<Bounded>) -> Option<Self> {
-        Some(CastersOnSurface {
+        Some(SurfaceCasterLookup {
             casters: scene.facts().surface_casters.as_ref()?,
             surface: transform.surface(scene)?,
             inverse: Bounded::exact(1.0) / transform.scale,

@@ -123,7 +123,7 @@ impl<R: Real> Tetrahedron<R> {
     }
 
     /// The closed half-space of a face that holds the solid.
-    pub(super) fn plane(&self, face: usize) -> HalfSpace<R> {
+    pub(super) fn inner_half_space(&self, face: usize) -> HalfSpace<R> {
         self.inside(face, true)
     }
 
@@ -143,7 +143,7 @@ impl<R: Real> Tetrahedron<R> {
             normal: -self.normals[face],
             at: self.vertices[FACES[face][0]],
             closed,
-            border: Some(self.supports[face]),
+            support: Some(self.supports[face]),
         }
     }
 
@@ -154,7 +154,7 @@ impl<R: Real> Tetrahedron<R> {
             normal: functions.edge_normals[edge],
             at: self.vertices[EDGES[edge].2[0]],
             closed: true,
-            border: None,
+            support: None,
         }
     }
 

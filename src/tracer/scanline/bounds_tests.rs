@@ -177,7 +177,7 @@ impl Case<'_> {
         for first in (0..SIZE).step_by(S::f64s::LEN) {
             let x = self.grid.coordinate(first);
             let hits = in_row.hits(x);
-            let facing = in_row.value(&constants.light, &hits);
+            let facing = in_row.value(&constants.n_dot_l, &hits);
             let zones = [0, 1, 2].map(|zone| {
                 let ambient = in_row.ambient(zone);
                 in_row.lit(x, facing, &ambient, (zone, u64::MAX))
@@ -199,7 +199,7 @@ impl Case<'_> {
                 let computed = facing.as_slice()[lane];
                 found
                     .light
-                    .note(terms.normal_light, computed, constants.light.error);
+                    .note(terms.normal_light, computed, constants.n_dot_l.error);
 
                 let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
                 let facing = terms.normal_light.to_f64();

@@ -119,7 +119,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     };
     match visible {
         Visible::Only(only) => shown(only),
-        Visible::First(number) => {
+        Visible::DepthTest(number) => {
             let (test, candidates) = tests.test(number);
             let solids = candidates.iter();
             let solids: Vec<String> = solids

@@ -1,5 +1,5 @@
 //! Writes what a row shows, unless it stands there from the frame before.
 
-pub(super) mod band;
 pub(super) mod history;
 pub(super) mod paint;
+pub(super) mod row_writer;

@@ -138,8 +138,8 @@ fn check_tetrahedra(
             }
         }
         for face in t.eye_edges.entered() {
-            let (_, depth) = face_plane(t.solid.plane(face), grid);
-            let plane = exact.solid.plane(face);
+            let (_, depth) = face_plane(t.solid.inner_half_space(face), grid);
+            let plane = exact.solid.inner_half_space(face);
             for (column, row) in (0..SIZE)
                 .step_by(41)
                 .flat_map(|x| (0..SIZE).step_by(37).map(move |y| (x, y)))

@@ -59,15 +59,15 @@ pub(crate) struct ParallelLines<'s> {
     plane: &'s PixelPlane,
     direction: Direction<Bounded>,
     /// The change of a line's moment where X grows by 1.
-    per_column: Vector<Bounded>,
-    /// The squared length of `per_column`.
-    squared_per_column: Bounded,
-    /// The direction of the shortest moment of a row, over the length of `per_column`.
+    per_x: Vector<Bounded>,
+    /// The squared length of `per_x`.
+    squared_per_x: Bounded,
+    /// The direction of the shortest moment of a row, over the length of `per_x`.
     shortest: Vector<Bounded>,
     /// The change of the chord's middle where Y grows by 1.
-    middle_per_row: Bounded,
+    middle_per_y: Bounded,
     /// The change of m where Y grows by 1.
-    m_per_row: Bounded,
+    m_per_y: Bounded,
     /// The product of this vector with a point, seen from the plane's origin, is Y of the pixel
     /// whose line passes through the point.
     row_axis: Vector<Bounded>,
@@ -76,22 +76,22 @@ pub(crate) struct ParallelLines<'s> {
 impl<'s> ParallelLines<'s> {
     pub(crate) fn new(plane: &'s PixelPlane, direction: Direction<Bounded>) -> Self {
         let l = direction.vector;
-        let per_column = plane.per_column.cross(l);
-        let per_row = plane.per_row.cross(l);
-        let squared_per_column = per_column.squared_length();
+        let per_x = plane.per_x.cross(l);
+        let per_y = plane.per_y.cross(l);
+        let squared_per_x = per_x.squared_length();
         // The moment is shortest in the middle of a chord, and there perpendicular to both l and
-        // `per_column`.
-        let shortest = l.cross(per_column);
-        let shortest = shortest.divided_by(shortest.length() * squared_per_column.sqrt());
+        // `per_x`.
+        let shortest = l.cross(per_x);
+        let shortest = shortest.divided_by(shortest.length() * squared_per_x.sqrt());
         ParallelLines {
             plane,
             direction,
-            per_column,
-            squared_per_column,
+            per_x,
+            squared_per_x,
             shortest,
-            middle_per_row: -(per_row.dot(per_column) / squared_per_column),
-            m_per_row: per_row.dot(shortest),
-            row_axis: per_column.divided_by(plane.per_row.dot(per_column)),
+            middle_per_y: -(per_y.dot(per_x) / squared_per_x),
+            m_per_y: per_y.dot(shortest),
+            row_axis: per_x.divided_by(plane.per_y.dot(per_x)),
         }
     }
 
@@ -113,11 +113,11 @@ impl<'s> ParallelLines<'s> {
             direction: self.direction,
             origin_support: None,
         });
-        let middle = -(moment.dot(self.per_column) / self.squared_per_column);
+        let middle = -(moment.dot(self.per_x) / self.squared_per_x);
         Ellipse::new(
-            (middle, self.middle_per_row),
-            (moment.dot(self.shortest), self.m_per_row),
-            self.direction.squared_length * sphere.radius.squared() / self.squared_per_column,
+            (middle, self.middle_per_y),
+            (moment.dot(self.shortest), self.m_per_y),
+            self.direction.squared_length * sphere.radius.squared() / self.squared_per_x,
             grid,
         )
     }
@@ -286,9 +286,9 @@ mod tests {
             let mut vector = |max: f64| Vector::new(number(max), number(max), number(max));
             let plane = PixelPlane {
                 origin: vector(750.0),
-                per_column: vector(1.0),
-                per_row: vector(1.0),
-                plane: None,
+                per_x: vector(1.0),
+                per_y: vector(1.0),
+                support: None,
             };
             let direction = vector(1.0);
             let lines = ParallelLines::new(
@@ -299,7 +299,7 @@ mod tests {
                 },
             );
             let [x, y] = [column, row].map(|number| Bounded::exact(grid.coordinate(number)));
-            let on_plane = plane.origin + plane.per_column * x + plane.per_row * y;
+            let on_plane = plane.origin + plane.per_x * x + plane.per_y * y;
             let point = on_plane + direction * number(500.0);
             let (from, to) = lines.rows_through([point; 4], grid);
             assert!(from <= row && row < to, "{row}: {from} to {to}");

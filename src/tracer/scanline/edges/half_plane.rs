@@ -30,17 +30,17 @@ enum Border {
     /// The half-plane lies to the left of the root.
     Right(Root),
     /// The border is level, or f64 does not tell that it is not.
-    Level {
+    Horizontal {
         /// A bound on the error of the sum, without that of the part of Y.
         error: f64,
     },
 }
 
-/// Where the border crosses a row, in columns: at + per_row · Y.
+/// Where the border crosses a row, in columns: at + per_y · Y.
 #[derive(Clone, Copy)]
 struct Root {
     at: f64,
-    per_row: f64,
+    per_y: f64,
     /// A bound on the error in columns.
     slack: f64,
 }
@@ -52,7 +52,7 @@ impl HalfPlane {
         column: Bounded::UNKNOWN,
         row: Bounded::UNKNOWN,
         closed: false,
-        border: Border::Level {
+        border: Border::Horizontal {
             error: f64::INFINITY,
         },
     };
@@ -70,22 +70,22 @@ impl HalfPlane {
         let magnitude = constant.value().abs() + row.value().abs() * max;
         let magnitude_of_x = column.value().abs() * max;
         // In columns the root is N/2 − (constant + row · Y)/(3 · column), and moves by the same
-        // part of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_row` by 2u
+        // part of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_y` by 2u
         // more, the product with Y and the sum with it by u each: less than 8u of the terms'
         // magnitudes, and of N/2 and the root, which is below 3N where it matters.
         let inverse = 1.0 / (PIXEL * column.value());
         let root = Root {
             at: grid.half - constant.value() * inverse,
-            per_row: -(row.value() * inverse),
+            per_y: -(row.value() * inverse),
             slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
                 + 16.0 * U * 3.0 * f64::from(grid.size))
                 * INFLATION,
         };
-        let is_finite = root.at.is_finite() && root.per_row.is_finite() && root.slack.is_finite();
+        let is_finite = root.at.is_finite() && root.per_y.is_finite() && root.slack.is_finite();
         // The sum rounds by less than 2u of its terms twice.
         let error = (carried + 4.0 * U * magnitude) * INFLATION;
         let border = match inverse > 0.0 {
-            _ if !is_finite || magnitude_of_x <= error => Border::Level {
+            _ if !is_finite || magnitude_of_x <= error => Border::Horizontal {
                 error: (error + magnitude_of_x) * INFLATION,
             },
             true => Border::Left(root),
@@ -103,15 +103,15 @@ impl HalfPlane {
     /// The pixels whose points on the plane lie in a half-space.
     pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
         let n = half_space.normal;
-        if half_space.border.is_some() && half_space.border == plane.plane {
+        if half_space.support.is_some() && half_space.support == plane.support {
             // All points lie on the border.
             let zero = Bounded::exact(0.0);
             return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
         }
         HalfPlane::new(
             n.dot(plane.origin - half_space.at),
-            n.dot(plane.per_column),
-            n.dot(plane.per_row),
+            n.dot(plane.per_x),
+            n.dot(plane.per_y),
             half_space.closed,
             grid,
         )
@@ -129,9 +129,9 @@ impl HalfPlane {
         let (root, rightward) = match &self.border {
             Border::Left(root) => (root, true),
             Border::Right(root) => (root, false),
-            Border::Level { .. } => return self.decide(x, y),
+            Border::Horizontal { .. } => return self.decide(x, y),
         };
-        let beyond = number_at(x, grid.half) - (y * root.per_row + root.at);
+        let beyond = number_at(x, grid.half) - (y * root.per_y + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
             Some((beyond > 0.0) == rightward)
         } else {
@@ -150,16 +150,16 @@ impl HalfPlane {
         let ColumnEnclosure { possible, certain } = enclosure;
         match &self.border {
             Border::Left(root) => {
-                let root_column = y * root.per_row + root.at;
+                let root_column = y * root.per_y + root.at;
                 possible[0] = possible[0].max(root_column - root.slack);
                 certain[0] = certain[0].max(root_column + root.slack);
             }
             Border::Right(root) => {
-                let root_column = y * root.per_row + root.at;
+                let root_column = y * root.per_y + root.at;
                 possible[1] = possible[1].min(root_column + root.slack);
                 certain[1] = certain[1].min(root_column - root.slack);
             }
-            Border::Level { error } => {
+            Border::Horizontal { error } => {
                 let sum = y * self.row.value() + self.constant.value();
                 let is_in = sum.simd_gt(*error);
                 if !is_in.all_true() {

@@ -4,11 +4,11 @@ use crate::number::Bounded;
 use crate::scene::Support;
 use crate::tracer::vector::Vector;
 
-/// The points at which eye rays meet a plane: `origin` + X · `per_column` + Y · `per_row`.
+/// The points at which eye rays meet a plane: `origin` + X · `per_x` + Y · `per_y`.
 pub(crate) struct PixelPlane {
     pub(crate) origin: Vector<Bounded>,
-    pub(crate) per_column: Vector<Bounded>,
-    pub(crate) per_row: Vector<Bounded>,
+    pub(crate) per_x: Vector<Bounded>,
+    pub(crate) per_y: Vector<Bounded>,
     /// The support of the plane, if rays leave it.
-    pub(crate) plane: Option<Support>,
+    pub(crate) support: Option<Support>,
 }

@@ -68,7 +68,7 @@ struct Appearances<'p, 's> {
     view: &'p View<'s, Bounded>,
     mirrored: bool,
     /// Whether the stage has shadows.
-    shadows: bool,
+    has_shadows: bool,
     surface: SurfaceShadow<'p>,
     /// Made for the first sphere.
     lighting: OnceCell<Lighting>,
@@ -80,7 +80,7 @@ impl<'p, 's> Appearances<'p, 's> {
             picture,
             view,
             mirrored,
-            shadows: picture.stage >= Stage::Shadow,
+            has_shadows: picture.stage >= Stage::Shadow,
             surface: SurfaceShadow::new(picture, view, mirrored),
             lighting: OnceCell::new(),
         }
@@ -132,8 +132,8 @@ impl<'p, 's> Appearances<'p, 's> {
         let lighting = self
             .lighting
             .get_or_init(|| Lighting::new(&self.view.shading));
-        let constants = SphereConstants::new(sphere, outline, lighting, color, self.shadows);
-        let casters = if self.shadows {
+        let constants = SphereConstants::new(sphere, outline, lighting, color, self.has_shadows);
+        let casters = if self.has_shadows {
             let facts = self.picture.scene.facts();
             let solids = facts.casters.on(number, None);
             let solids = casters_on(&constants, number, self.view, lighting, solids, arena);
@@ -148,7 +148,7 @@ impl<'p, 's> Appearances<'p, 's> {
             constants,
             casters,
             lit: self.decision(number, None, false),
-            in_shadow: paint(self.shadows),
+            in_shadow: paint(self.has_shadows),
         }))
     }
 
@@ -161,8 +161,8 @@ impl<'p, 's> Appearances<'p, 's> {
         let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
         for (face, plane) in solid.front_faces {
-            let turned_away = self.shadows && t.solid.turned_away(*face);
-            let shadows = if self.shadows && !turned_away {
+            let turned_away = self.has_shadows && t.solid.turned_away(*face);
+            let shadows = if self.has_shadows && !turned_away {
                 self.shadows_on_face(solid, (*face, plane), parts)
             } else {
                 Growing::new_in(arena)
@@ -171,7 +171,7 @@ impl<'p, 's> Appearances<'p, 's> {
                 let decision = self.decision(solid.number, Some(*face), in_shadow);
                 parts.paints.add(decision)
             };
-            let in_shadow = paint(self.shadows);
+            let in_shadow = paint(self.has_shadows);
             front_faces.push(FrontFace {
                 lit: if turned_away { in_shadow } else { paint(false) },
                 in_shadow,

@@ -157,9 +157,9 @@ pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
     let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
     PixelPlane {
         origin: vector(0.0, 0.0, grid.max),
-        per_column: vector(1.0, 0.0, 0.0),
-        per_row: vector(0.0, 1.0, 0.0),
-        plane: None,
+        per_x: vector(1.0, 0.0, 0.0),
+        per_y: vector(0.0, 1.0, 0.0),
+        support: None,
     }
 }
 
@@ -172,8 +172,8 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
     let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / n_dot_d);
     let depths = [
         depth(eye.origin - face.at),
-        depth(eye.per_column),
-        depth(eye.per_row),
+        depth(eye.per_x),
+        depth(eye.per_y),
     ];
     let sum = |of: &dyn Fn(&Bounded) -> f64| -> f64 {
         let factors = [1.0, grid.max, grid.max];
@@ -186,9 +186,9 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
     );
     let plane = PixelPlane {
         origin: eye.origin + d * depths[0],
-        per_column: eye.per_column + d * depths[1],
-        per_row: eye.per_row + d * depths[2],
-        plane: face.border,
+        per_x: eye.per_x + d * depths[1],
+        per_y: eye.per_y + d * depths[2],
+        support: face.support,
     };
     let [constant, column, row] = depths.map(Bounded::value);
     let depth = FaceDepth {
@@ -196,7 +196,7 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
         column,
         row,
         error: (errors + 8.0 * U * magnitudes) * INFLATION,
-        support: face.border,
+        support: face.support,
     };
     (plane, depth)
 }

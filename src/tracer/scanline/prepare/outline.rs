@@ -91,7 +91,7 @@ impl<'f> Outlines<'f> {
                     let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));
                     let faces = t.eye_edges.entered();
                     let front_faces =
-                        faces.map(|face| (face, face_plane(t.solid.plane(face), grid)));
+                        faces.map(|face| (face, face_plane(t.solid.inner_half_space(face), grid)));
                     let mut depths = bumpalo::collections::Vec::<FaceDepth>::new_in(arena);
                     let front_faces = front_faces.map(|(face, (plane, depth))| {
                         depths.push(depth);

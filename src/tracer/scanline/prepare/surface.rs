@@ -58,15 +58,15 @@ impl<'f> PreparedSurface<'f> {
                 surface.square.height,
                 Bounded::exact(grid.max) + ten * height,
             ),
-            per_column: Vector::new(one, zero, zero),
-            per_row: Vector::new(zero, zero, -(ten * third)),
-            plane: Some(surface.square.support),
+            per_x: Vector::new(one, zero, zero),
+            per_y: Vector::new(zero, zero, -(ten * third)),
+            support: Some(surface.square.support),
         };
         // Scaled by 3, no coefficient is a third, which would round: at α = 0 a side of the square
         // may pass through all pixels of a row exactly.
         let scaled = [
             plane.origin * three,
-            plane.per_column * three,
+            plane.per_x * three,
             Vector::new(zero, zero, -ten),
         ];
         let sides = surface
@@ -82,7 +82,7 @@ impl<'f> PreparedSurface<'f> {
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let depth = LevelDepth {
             constant: -height.value(),
-            per_row: third.value(),
+            per_y: third.value(),
             error: (height.error() + 8.0 * U * magnitude) * INFLATION,
         };
         let rows = surface.extent.rows(grid.size);
@@ -133,10 +133,10 @@ impl<'f> PreparedSurface<'f> {
     }
 }
 
-/// The parameter at which eye rays reach a level plane: constant + per_row · Y.
+/// The parameter at which eye rays reach a level plane: constant + per_y · Y.
 struct LevelDepth {
     constant: f64,
-    per_row: f64,
+    per_y: f64,
     /// A bound on the error in any row.
     error: f64,
 }
@@ -144,7 +144,7 @@ struct LevelDepth {
 impl LevelDepth {
     /// Bounds on the parameter at Y.
     fn at(&self, y: f64) -> (f64, f64) {
-        let depth = self.constant + self.per_row * y;
+        let depth = self.constant + self.per_y * y;
         (depth - self.error, depth + self.error)
     }
 }

@@ -158,7 +158,7 @@ impl SphereBand {
         first: u32,
         grid: Grid,
     ) {
-        self.facing.is_concave = sphere.light.is_concave == Some(true);
+        self.facing.is_concave = sphere.n_dot_l.is_concave == Some(true);
         self.facing.certain = 0;
         self.bright = Intervals::default();
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
@@ -176,8 +176,8 @@ impl SphereBand {
             store::<S>(shadeable, &mut self.shadeable, lane);
             store::<S>(rows.chord(innermost), &mut self.zones[0], lane);
             store::<S>(rows.chord(inner), &mut self.zones[1], lane);
-            if sphere.shadows {
-                let (inside, certain) = rows.arc(&sphere.light, 0.0, shadeable);
+            if sphere.has_shadows {
+                let (inside, certain) = rows.arc(&sphere.n_dot_l, 0.0, shadeable);
                 store::<S>(inside, &mut self.facing.inside, lane);
                 self.facing.certain |= certain.to_bitmask() << lane;
             }

@@ -66,9 +66,9 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     /// n·l of the pixels from X = `x` on, in two vectors if one does not hold all, from `next` on.
     #[inline(always)]
     pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [LaneVector<S, P>; 2] {
-        let mut lights = [self.value(&self.sphere.light, &self.hits(x)); 2];
+        let mut lights = [self.value(&self.sphere.n_dot_l, &self.hits(x)); 2];
         if LaneVector::<S, P>::LEN < S::f32s::LEN {
-            lights[1] = self.value(&self.sphere.light, &self.hits(next));
+            lights[1] = self.value(&self.sphere.n_dot_l, &self.hits(next));
         }
         lights
     }
@@ -84,7 +84,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
             Caster::Polyhedron(forms) => {
                 let (mut yes, mut no) = (self.mask(true), self.mask(false));
                 for form in *forms {
-                    let (inside, outside) = P::is_inside(self.value(form, hits), form.error);
+                    let (inside, outside) = P::is_not_negative(self.value(form, hits), form.error);
                     yes &= inside;
                     no |= outside;
                 }
@@ -99,10 +99,11 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                 ];
                 let inside =
                     splat::<S, P>(self.simd, cylinder.squared_radius) - (x * x + y * y + z * z);
-                let (inside, outside) = P::is_inside(inside, cylinder.error);
+                let (inside, outside) = P::is_not_negative(inside, cylinder.error);
                 // A caster abreast of the hit casts no shadow on it.
                 let before = &cylinder.before;
-                let (not_before, is_before) = P::is_inside(-self.value(before, hits), before.error);
+                let (not_before, is_before) =
+                    P::is_not_negative(-self.value(before, hits), before.error);
                 (inside & is_before, outside | not_before)
             }
         }
@@ -168,7 +169,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         highlight: &SphereHighlight,
         hits: &Hits<LaneVector<S, P>>,
         (zone, bright): (usize, u64),
-    ) -> P::Sides<LaneVector<S, P>> {
+    ) -> P::Enclosure<LaneVector<S, P>> {
         let (simd, of) = (self.simd, P::Lane::of);
         // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
         // is bright.
@@ -178,14 +179,14 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         let m = self.m * self.sphere.inverse_radius - m;
         let s = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -s));
         let squared = q * q + s * s + of(m * m);
-        let missing = (squared * of(0.5)).min(of(1.0 - self.sphere.threshold));
-        let power = power::<S, P>(simd, missing, self.sphere.exponent);
+        let one_minus = (squared * of(0.5)).min(of(1.0 - self.sphere.threshold));
+        let power = power::<S, P>(simd, one_minus, self.sphere.exponent);
         let power = P::where_bright(simd, power, bright);
         let [constant, slope] = highlight.errors[zone];
         // xⁿ⁻¹ is at most 2xⁿ for x ≥ 1/2, and at most 2¹⁻ⁿ for smaller x; the factor 1.06 is that
         // of max(X, x)ⁿ⁻¹ over xⁿ⁻¹.
         let steep = power * of(2.0 * 1.06) + of(1.06 * highlight.smallest_power);
-        P::within(power, (missing * of(slope) + of(constant)) * steep)
+        P::within(power, (one_minus * of(slope) + of(constant)) * steep)
     }
 }
 
@@ -194,15 +195,15 @@ fn splat<S: Simd, P: Policy<S>>(simd: S, value: f64) -> LaneVector<S, P> {
     LaneVector::<S, P>::splat(simd, P::Lane::of(value))
 }
 
-/// (1 − `missing`)ⁿ, by squaring.
+/// (1 − `one_minus`)ⁿ, by squaring.
 #[inline(always)]
 fn power<S: Simd, P: Policy<S>>(
     simd: S,
-    missing: LaneVector<S, P>,
+    one_minus: LaneVector<S, P>,
     exponent: u32,
 ) -> LaneVector<S, P> {
     let mut power = P::factor(splat::<S, P>(simd, 0.0));
-    let (mut square, mut bits) = (P::factor(missing), exponent);
+    let (mut square, mut bits) = (P::factor(one_minus), exponent);
     loop {
         if bits & 1 == 1 {
             power = P::product(power, square);

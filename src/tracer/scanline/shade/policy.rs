@@ -33,14 +33,14 @@ pub(crate) type Answers<S, P> = (Mask<S, P>, Mask<S, P>);
 pub(crate) type Mask<S, P> = <LaneVector<S, P> as SimdBase<S>>::Mask;
 
 /// Three vectors of samples as they lie in memory.
-pub(crate) type Samples<S, P> = [<P as Policy<S>>::Sides<LaneVector<S, P>>; 3];
+pub(crate) type Samples<S, P> = [<P as Policy<S>>::Enclosure<LaneVector<S, P>>; 3];
 
 /// An arithmetic of the shader: its numbers, and what it does about their errors.
 pub(crate) trait Policy<S: Simd> {
     type Lane: Lane;
 
     /// A number without bounds, or the two ends of its enclosure.
-    type Sides<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
+    type Enclosure<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
 
     /// a b + c.
     fn product_plus(
@@ -50,18 +50,18 @@ pub(crate) trait Policy<S: Simd> {
     ) -> LaneVector<S, Self>;
 
     /// Whether values, of which `error` bounds the errors, are 0 or more.
-    fn is_inside(value: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
+    fn is_not_negative(value: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
 
     /// Values with these bounds on their errors.
     fn within(
         value: LaneVector<S, Self>,
         error: LaneVector<S, Self>,
-    ) -> Self::Sides<LaneVector<S, Self>>;
+    ) -> Self::Enclosure<LaneVector<S, Self>>;
 
-    /// 1 − `missing`, as the factor of a power.
+    /// 1 − `one_minus`, as the factor of a power.
     #[inline(always)]
-    fn factor(missing: LaneVector<S, Self>) -> LaneVector<S, Self> {
-        -missing + <Self::Lane as Lane>::of(1.0)
+    fn factor(one_minus: LaneVector<S, Self>) -> LaneVector<S, Self> {
+        -one_minus + <Self::Lane as Lane>::of(1.0)
     }
 
     /// The product of two factors.
@@ -99,7 +99,7 @@ pub(crate) struct Certified;
 
 impl<S: Simd> Policy<S> for Certified {
     type Lane = f64;
-    type Sides<V: Copy> = [V; 2];
+    type Enclosure<V: Copy> = [V; 2];
 
     #[inline(always)]
     fn product_plus(a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
@@ -107,7 +107,7 @@ impl<S: Simd> Policy<S> for Certified {
     }
 
     #[inline(always)]
-    fn is_inside(value: S::f64s, error: f64) -> Answers<S, Self> {
+    fn is_not_negative(value: S::f64s, error: f64) -> Answers<S, Self> {
         (value.simd_gt(error), value.simd_lt(-error))
     }
 
@@ -144,7 +144,7 @@ impl<S: Simd> Policy<S> for Certified {
 /// Without bounds.
 impl<S: Simd, L: Lane> Policy<S> for L {
     type Lane = L;
-    type Sides<V: Copy> = [V; 1];
+    type Enclosure<V: Copy> = [V; 1];
 
     #[inline(always)]
     fn product_plus(a: L::Vector<S>, b: L::Vector<S>, c: L::Vector<S>) -> L::Vector<S> {
@@ -152,9 +152,9 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     }
 
     #[inline(always)]
-    fn is_inside(value: L::Vector<S>, _: f64) -> Answers<S, Self> {
-        let is_inside = value.simd_ge(L::of(0.0));
-        (is_inside, !is_inside)
+    fn is_not_negative(value: L::Vector<S>, _: f64) -> Answers<S, Self> {
+        let is_not_negative = value.simd_ge(L::of(0.0));
+        (is_not_negative, !is_not_negative)
     }
 
     #[inline(always)]
@@ -165,8 +165,8 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     // A factor 1 − x is kept as x: 1 − x would lose the digits of a small x.
 
     #[inline(always)]
-    fn factor(missing: L::Vector<S>) -> L::Vector<S> {
-        missing
+    fn factor(one_minus: L::Vector<S>) -> L::Vector<S> {
+        one_minus
     }
 
     #[inline(always)]

@@ -167,7 +167,7 @@ fn shadowed<S: Simd, P: Policy<S>>(
 ) -> (u64, u64) {
     let (mut dark, mut lit) = (row.mask(false), row.mask(true));
     if !run.is_facing {
-        (dark, lit) = P::is_inside(-light, shaded.constants.light.error);
+        (dark, lit) = P::is_not_negative(-light, shaded.constants.n_dot_l.error);
     }
     if !run.scratch.casters.is_empty() {
         let hits = row.hits(x);

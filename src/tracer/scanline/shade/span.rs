@@ -9,8 +9,8 @@ use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of
 use crate::tracer::scanline::shade::policy::{Certified, Precision};
 use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::write::band::BandWriter;
 use crate::tracer::scanline::write::paint::Paint;
+use crate::tracer::scanline::write::row_writer::RowWriter;
 
 /// What the shading of spheres needs, kept from span to span.
 #[derive(Default)]
@@ -28,20 +28,18 @@ impl SpanShader {
     /// Writes columns that show a sphere; `in_shadow` is its paint in shadow.
     pub(crate) fn shade<'r>(
         &mut self,
-        writer: &mut BandWriter<'r>,
+        writer: &mut RowWriter<'r>,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         in_shadow: &'r Paint,
         pixels: &impl Pixels,
     ) {
-        let sphere = self
-            .cache
-            .of(shaded, writer.number, writer.level, writer.grid);
+        let sphere = self.cache.of(shaded, writer.row, writer.level, writer.grid);
         let shadeable = both(columns, sphere.shadeable);
         self.scratch.doubts.extend(columns.0..shadeable.0);
         self.scratch.doubts.extend(shadeable.1..columns.1);
         match sphere.facing {
-            _ if !shaded.constants.shadows => {
+            _ if !shaded.constants.has_shadows => {
                 self.shade_run(writer, shadeable, shaded, (&sphere, true), in_shadow);
             }
             None => self.shade_run(writer, shadeable, shaded, (&sphere, false), in_shadow),
@@ -69,7 +67,7 @@ impl SpanShader {
     /// Shades columns that are all shadeable.
     fn shade_run(
         &mut self,
-        writer: &mut BandWriter<'_>,
+        writer: &mut RowWriter<'_>,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         (sphere, is_facing): (&SphereColumns, bool),

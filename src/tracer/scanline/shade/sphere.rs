@@ -218,7 +218,7 @@ pub(crate) struct SphereConstants {
     bounds: HitBounds,
     center: Vector<Bounded>,
     /// n·l, with n and l of length 1.
-    pub(crate) light: LinearForm,
+    pub(crate) n_dot_l: LinearForm,
     /// 1/R.
     pub(crate) inverse_radius: f64,
     /// `None` where there is no highlight.
@@ -232,7 +232,7 @@ pub(crate) struct SphereConstants {
     pub(crate) errors: [f64; ZONES],
     /// Whether there are shadows in this stage; without, a point turned away from the light has its
     /// ambient and specular light.
-    pub(crate) shadows: bool,
+    pub(crate) has_shadows: bool,
 }
 
 /// The coefficients of ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
@@ -254,7 +254,7 @@ impl SphereConstants {
         outline: &Ellipse,
         lighting: &Lighting,
         color: Vector<Bounded>,
-        shadows: bool,
+        has_shadows: bool,
     ) -> SphereConstants {
         let radius = sphere.radius.at_most() * INFLATION;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
@@ -273,7 +273,7 @@ impl SphereConstants {
             s_errors,
         };
         let to_light = lighting.to_light_unit.map(|part| part / sphere.radius);
-        let light = bounds.form(to_light);
+        let n_dot_l = bounds.form(to_light);
         let highlight = &lighting.highlight;
         let sphere_highlight = lighting
             .halfway
@@ -323,7 +323,7 @@ impl SphereConstants {
                 .map(|divisor| (radius / divisor) * (radius / divisor) * INFLATION),
             bounds,
             center: sphere.center,
-            light,
+            n_dot_l,
             inverse_radius: 1.0 / sphere.radius.value(),
             highlight: sphere_highlight,
             exponent: highlight.exponent,
@@ -334,7 +334,7 @@ impl SphereConstants {
                 specular: cycle(2),
             },
             errors,
-            shadows,
+            has_shadows,
         }
     }
 

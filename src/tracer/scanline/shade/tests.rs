@@ -46,7 +46,7 @@ fn check(
             from,
             zones: columns.zones,
             bright: columns.bright,
-            is_facing: !shaded.constants.shadows,
+            is_facing: !shaded.constants.has_shadows,
             samples: &mut samples,
             decisions: Some(&mut decisions),
             in_shadow: &frame.paints[shaded.in_shadow],

@@ -61,7 +61,7 @@ impl DepthTester {
     ) {
         match visible {
             Visible::Only(shows) => self.push(columns, shows),
-            Visible::First(test) => {
+            Visible::DepthTest(test) => {
                 let test = depth_tests.test(test);
                 let first = self.near.len();
                 let indices = 0..test.1.len();

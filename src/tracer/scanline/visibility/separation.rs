@@ -90,7 +90,7 @@ fn apart_by_face(view: &View<'_, Bounded>, i: usize, j: usize) -> Option<Vector<
         return None;
     };
     (0..4).find_map(|face| {
-        let plane = t.solid.plane(face);
+        let plane = t.solid.inner_half_space(face);
         let outward = -plane.normal;
         let height = |point: Vector<Bounded>| outward.dot(point - plane.at);
         let is_beyond = match view.solid(j) {

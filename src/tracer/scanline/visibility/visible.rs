@@ -24,7 +24,7 @@ pub(crate) enum Visible {
     /// One thing in every row.
     Only(Shown),
     /// The nearest of some solids, by the depth test of this number: each row settles it.
-    First(u32),
+    DepthTest(u32),
 }
 
 impl Visible {
@@ -43,7 +43,7 @@ impl Packed {
             Visible::Only(Shown::InDoubt) => (1, 0),
             Visible::Only(Shown::Paint(PaintNumber(number))) => (2, number),
             Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid.0),
-            Visible::First(number) => (5, number),
+            Visible::DepthTest(number) => (5, number),
         };
         Packed(kind << 32 | u64::from(number))
     }
@@ -65,7 +65,7 @@ impl Packed {
                 mirrored: kind == 4,
                 solid: SolidIndex(number),
             }),
-            5 => Visible::First(number),
+            5 => Visible::DepthTest(number),
             _ => Visible::IN_DOUBT,
         }
     }
@@ -130,7 +130,7 @@ impl DepthTests {
             surface,
             rest,
         });
-        Visible::First(self.tests.len() as u32 - 1)
+        Visible::DepthTest(self.tests.len() as u32 - 1)
     }
 
     /// The test of this number, and its candidates.

@@ -13,14 +13,14 @@ use crate::tracer::scanline::write::paint::{self, Paint};
 use crate::tracer::tally::Tally;
 
 /// Neighbouring rows, which are written one after the other.
-pub(crate) struct BandWriter<'r> {
+pub(crate) struct RowWriter<'r> {
     pub(crate) level: Level,
     pub(crate) precision: Precision,
     pub(crate) grid: Grid,
     /// The first of the rows.
     pub(crate) first: u32,
     /// The number of the row that is being written.
-    pub(crate) number: u32,
+    pub(crate) row: u32,
     /// Y of that row.
     pub(crate) y: f64,
     /// The samples of all rows.
@@ -34,16 +34,16 @@ pub(crate) struct BandWriter<'r> {
     pub(crate) tally: Tally,
 }
 
-impl<'r> BandWriter<'r> {
+impl<'r> RowWriter<'r> {
     /// The indices of columns of the row among the pixels of all rows.
     pub(crate) fn pixels(&self, (from, to): Columns) -> Range<usize> {
-        let start = (self.number - self.first) as usize * self.grid.size as usize;
+        let start = (self.row - self.first) as usize * self.grid.size as usize;
         start + from as usize..start + to as usize
     }
 
     /// The history of the row.
     fn history(&mut self) -> Option<&mut RowHistory> {
-        let index = (self.number - self.first) as usize;
+        let index = (self.row - self.first) as usize;
         self.history.as_mut().map(|history| &mut history[index])
     }
 
@@ -56,7 +56,7 @@ impl<'r> BandWriter<'r> {
         // `self` cannot be borrowed while its history is.
         match self.history.take() {
             Some(history) => {
-                let index = (self.number - self.first) as usize;
+                let index = (self.row - self.first) as usize;
                 let write = |columns| self.extend_pending(columns, paint);
                 history[index].fill(columns, paint.bits(), write);
                 self.history = Some(history);
@@ -85,7 +85,7 @@ impl<'r> BandWriter<'r> {
         }
     }
 
-    /// Records that samples of the row are written by other means than [`BandWriter::fill`].
+    /// Records that samples of the row are written by other means than [`RowWriter::fill`].
     pub(crate) fn mark_written(&mut self) {
         if let Some(history) = self.history() {
             history.is_written = true;
@@ -109,7 +109,7 @@ impl<'r> BandWriter<'r> {
     pub(crate) fn decide(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &impl Pixels) {
         for column in columns {
             self.mark_written();
-            let ((decision, color), rung) = pixels.pixel(column, self.number);
+            let ((decision, color), rung) = pixels.pixel(column, self.row);
             let index = self.pixels((column, column)).start;
             self.samples[3 * index..3 * index + 3].copy_from_slice(&color);
             if let Some(decisions) = &mut self.decisions {
