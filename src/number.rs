@@ -39,7 +39,7 @@ pub(crate) trait Real:
     /// always answers.
     type Doubt;
 
-    /// The value of an f64, taken exactly.
+    /// The number of this value: exactly that, except that f32 rounds it.
     fn exact(value: f64) -> Self;
 
     /// The sine and the cosine of an angle, its f64 taken exactly.
@@ -171,8 +171,7 @@ fn round_enclosure(lower: f32, upper: f32) -> Option<f32> {
 fn round_sum(high: f64, low: f64) -> f32 {
     let rounded = high as f32;
     let between = high - f64::from(rounded);
-    // Only where high itself is halfway between two f32s, or on one, does low have a say: halfway
-    // it breaks the tie.
+    // Only where high is halfway between two f32s does low have a say: it breaks the tie.
     let neighbour = if between > 0.0 {
         rounded.next_up()
     } else {

@@ -261,7 +261,7 @@ impl Scene {
         }
     }
 
-    /// What exact arithmetic has decided about the scene.
+    /// What was found out about the scene once, when it was made.
     pub(crate) fn facts(&self) -> &Facts {
         &self.facts
     }

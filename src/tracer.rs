@@ -4,8 +4,8 @@
 //! [`Kernel`] chooses the number, and what happens where it leaves a doubt. To be read in this
 //! order:
 //!
-//! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show, points
-//!   and rays;
+//! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show,
+//!   points and rays;
 //! - `view_space`, `view_transform`, `view`: view space, into which the scene and its mirror image
 //!   are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
@@ -24,6 +24,8 @@
 //!
 //! [`Tracer::trace`] gives the frame to `with_frame`, which chooses the numbers; `trace_into` the
 //! image to the threads of the pool, in bands of rows; `RowTracer` traces a band.
+//!
+//! `scanline` also says what a new kind of solid would need.
 //!
 //! `tests/oracle.rs` evaluates the picture a second time. The oracle shares no code with this.
 

@@ -61,13 +61,13 @@ impl Bounded {
         -(-self).at_least()
     }
 
-    /// What it is about.
+    /// The approximation.
     #[inline]
     pub(crate) fn value(self) -> f64 {
         self.value
     }
 
-    /// How far the truth can be from that.
+    /// How far the truth can be from the approximation.
     #[inline]
     pub(crate) fn error(self) -> f64 {
         self.error
@@ -149,10 +149,7 @@ impl Div for Bounded {
         let divisor = other.value.abs();
         let known = other.error < divisor * f64::EPSILON.sqrt();
         if !known {
-            return Bounded {
-                value: 0.0,
-                error: f64::INFINITY,
-            };
+            return Bounded::UNKNOWN;
         }
         let value = self.value / other.value;
         let carried = (self.error + value.abs() * other.error) / (divisor - other.error);

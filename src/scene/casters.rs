@@ -106,7 +106,7 @@ impl Casters {
     }
 }
 
-/// Balls around some points, which hold a solid or a face in their convex ball.
+/// Balls around some points, which hold a solid or a face in their convex hull.
 #[derive(Clone, Copy)]
 struct Balls<'s> {
     centers: &'s [DVec3],

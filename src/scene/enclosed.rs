@@ -1,4 +1,5 @@
-//! Which solids lie inside of others: neither they nor their shadows are ever seen.
+//! Which solids lie inside of others: where all solids take part, neither they nor their shadows
+//! are seen.
 //!
 //! Every ray begins outside of all solids, or leaves a solid that is seen. So a ray meets a solid
 //! before it meets another one inside; where it meets both at once, the earlier in the scene's

@@ -75,7 +75,7 @@ impl Side {
 }
 
 impl Facts {
-    /// `right_handed` tells it of each tetrahedron; `direction` is the way the light travels.
+    /// `right_handed` has an entry for each tetrahedron; `direction` is the way the light travels.
     pub(super) fn new(
         spheres: &[Sphere],
         (tetrahedra, right_handed): (&[Tetrahedron], Vec<bool>),

@@ -29,8 +29,8 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Whether it is a sphere in the light, whose pixels are shaded; all other pixels of one decision
-    /// have one colour.
+    /// Whether it is a sphere in the light, whose pixels are shaded; all other pixels of one
+    /// decision have one colour.
     pub(crate) fn is_lit_sphere(&self) -> bool {
         self.face.is_none() && !self.in_shadow
     }

@@ -6,8 +6,8 @@ pub enum Kernel {
     /// Every decision as in exact arithmetic, every sample the true value correctly rounded.
     #[default]
     Exact,
-    /// Every pixel in f32, by careful formulas without bounds. The edges of regions are computed in
-    /// f64, once a row.
+    /// Colours in f32, by careful formulas without bounds. Which solid a pixel shows is told by
+    /// edges and depths in f64 with bounds, and in f32 where those leave it in doubt.
     Fast,
     /// The same in f64, rounded to f32 once at the end.
     Double,

@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 use std::convert::Infallible;
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use bumpalo::Bump;
 use bumpalo_herd::Herd;
@@ -13,6 +13,7 @@ use super::extent::Extents;
 use super::line::Normal;
 use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
+use super::pool::lock;
 use super::vector::Vector;
 use super::view::FrameSigns;
 use super::view_transform::ViewTransform;
@@ -254,10 +255,7 @@ impl<'f> Ladder<'f> {
     }
 
     fn arbitrary(&self) -> MutexGuard<'_, Vec<ArbitraryPicture<'f>>> {
-        // Nothing happens under the lock that could fail halfway.
-        self.arbitrary
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+        lock(&self.arbitrary)
     }
 
     /// The picture in any number.

@@ -126,22 +126,22 @@ impl Pool {
         self.workers.len() + 1
     }
 
-    /// Hands out `parts`: calls `work` once with each, the number of the thread that it is called
-    /// on, and that of the part. Returns when all have been worked at.
+    /// Hands out `bands`: calls `work` once with each, the number of the thread that it is called
+    /// on, and that of the band. Returns when all have been worked at.
     ///
     /// # Panics
     /// Where `work` does, as it does.
-    pub(crate) fn share<Part: Send>(
+    pub(crate) fn share<Band: Send>(
         &mut self,
-        parts: impl Iterator<Item = Part>,
-        work: impl Fn(usize, usize, Part) + Sync,
+        bands: impl Iterator<Item = Band>,
+        work: impl Fn(usize, usize, Band) + Sync,
     ) {
         // Nobody waits for these locks: a band is claimed once.
-        let parts: Vec<_> = parts.map(|part| Mutex::new(Some(part))).collect();
-        self.run(parts.len(), |thread, band| {
-            let part = lock(&parts[band]).take();
-            if let Some(part) = part {
-                work(thread, band, part);
+        let bands: Vec<_> = bands.map(|band| Mutex::new(Some(band))).collect();
+        self.run(bands.len(), |thread, number| {
+            let band = lock(&bands[number]).take();
+            if let Some(band) = band {
+                work(thread, number, band);
             }
         });
     }

@@ -51,8 +51,8 @@
 //!   (`solid`), a bounding ball (`bounding_ball`), a test whether it lies inside of others
 //!   (`enclosed`), what is exactly decided about it (`exact`), what may shade it (`casters`);
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view`,
-//!   `extent`, `palette` and `decision` name every kind of solid, and elsewhere the compiler names
-//!   each `match` on a `Solid`;
+//!   `extent`, `palette` and `decision` name every kind of solid (what is seen without a face is a
+//!   sphere), and elsewhere the compiler names each `match` on a `Solid`;
 //! - here: an outline and a depth (`prepare/outline`, `prepare/depth`), colours
 //!   (`prepare/appearance`, `visibility/resolve`, and `shade/` where they vary), shadows on planes
 //!   and on spheres (`prepare/shadows`, `shade/caster`), and separating planes

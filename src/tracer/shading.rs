@@ -27,7 +27,7 @@ pub(super) struct Shading<R> {
 }
 
 impl<R: Real> Shading<R> {
-    /// `halfway` is that of [`halfway`], or `None` where v + l = 0.
+    /// `halfway` is h, as the function [`halfway`] gives it, or `None` where v + l = 0.
     pub(super) fn new(scene: &Scene, to_light: Direction<R>, halfway: Option<Vector<R>>) -> Self {
         let (light, material) = (scene.light(), scene.material());
         let to_light_length = to_light.squared_length.sqrt();

@@ -31,8 +31,8 @@ impl<R: Real> Surface<R> {
         turn_back(self.sin, self.cos, v)
     }
 
-    /// The mirrored ray from a point of the square. In the reflected scene it is the continuation of
-    /// the eye ray.
+    /// The mirrored ray from a point of the square. In the reflected scene it is the continuation
+    /// of the eye ray.
     pub(super) fn mirrored_ray(&self, point: Vector<R>) -> Line<R> {
         Line {
             origin: point,

@@ -85,7 +85,7 @@ enum Halfway {
 }
 
 impl ViewSigns<'_> {
-    /// The same, with h computed by `refine` if `frame` computes it with too large an error.
+    /// The same, with h computed by `refine` if `transform` computes it with too large an error.
     pub(super) fn refined(
         self,
         scene: &Scene,
@@ -367,7 +367,7 @@ impl<'f, R: Real> View<'f, R> {
             .map(|caster| self.occludes_light(usize::from(*caster), ray)))
     }
 
-    /// The ray to the light from a point of the sphere or plane that it `leaves`.
+    /// The ray to the light from a point on the sphere or plane `support`.
     pub(super) fn ray_to_light(&self, origin: Vector<R>, support: Support) -> Line<R> {
         Line {
             origin,

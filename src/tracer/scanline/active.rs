@@ -175,7 +175,8 @@ impl ActiveEdges {
         }
     }
 
-    /// The number of edges that cross the row.
+    /// The number of edges that are kept for the row: those of the regions that have pixels in the
+    /// row's band.
     pub(crate) fn edge_count(&self) -> usize {
         self.edges.len()
     }
@@ -366,7 +367,8 @@ impl ActiveEdges {
         edges.clear();
         gaps.clear();
         let mut arrivals = self.arrivals.iter().peekable();
-        // `removed` and `added` count the removed and the added regions that cover the present gap.
+        // `removed` and `added` count the removed and the added edges that are open at the present
+        // gap: a region with two left edges counts twice.
         // Where both are 0, the same regions cover the gap as before, and what it shows holds.
         let (mut removed, mut added) = (0, 0);
         let mut before = self.gaps[0];

@@ -226,7 +226,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             }
             assert_eq!(from, size, "{name}, row {row}");
         }
-        // BandColumns that tell nothing would pass, too.
+        // Spans that leave everything in doubt would pass, too.
         assert!(certain > in_doubt, "{name}: {certain}, {in_doubt}");
     });
 }

@@ -11,12 +11,12 @@ use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::view_space::{PIXEL, number_at};
 
-/// The pixels where constant + `column` X + `row` Y ≥ 0, or > 0.
+/// The pixels where constant + `per_x` X + `per_y` Y ≥ 0, or > 0.
 #[derive(Clone, Copy)]
 pub(crate) struct HalfPlane {
     constant: Bounded,
-    column: Bounded,
-    row: Bounded,
+    per_x: Bounded,
+    per_y: Bounded,
     /// Whether pixels with a sum of 0 belong to it.
     closed: bool,
     border: Border,
@@ -31,7 +31,7 @@ enum Border {
     Right(Root),
     /// The border is level, or f64 does not tell that it is not.
     Horizontal {
-        /// A bound on the error of the sum, without that of the part of Y.
+        /// A bound on the error of constant + per_y · Y as a stand-in for the whole sum.
         error: f64,
     },
 }
@@ -49,8 +49,8 @@ impl HalfPlane {
     /// A half-plane of which every pixel is in doubt.
     pub(crate) const IN_DOUBT: HalfPlane = HalfPlane {
         constant: Bounded::UNKNOWN,
-        column: Bounded::UNKNOWN,
-        row: Bounded::UNKNOWN,
+        per_x: Bounded::UNKNOWN,
+        per_y: Bounded::UNKNOWN,
         closed: false,
         border: Border::Horizontal {
             error: f64::INFINITY,
@@ -59,24 +59,24 @@ impl HalfPlane {
 
     pub(crate) fn new(
         constant: Bounded,
-        column: Bounded,
-        row: Bounded,
+        per_x: Bounded,
+        per_y: Bounded,
         closed: bool,
         grid: Grid,
     ) -> Self {
         let max = grid.max;
         // The part of the sum's error that comes from the coefficients.
-        let carried = constant.error() + (column.error() + row.error()) * max;
-        let magnitude = constant.value().abs() + row.value().abs() * max;
-        let magnitude_of_x = column.value().abs() * max;
-        // In columns the root is N/2 − (constant + row · Y)/(3 · column), and moves by the same
-        // part of the sum's error. The inverse of 3 · column rounds by 2u, `at` and `per_y` by 2u
-        // more, the product with Y and the sum with it by u each: less than 8u of the terms'
+        let carried = constant.error() + (per_x.error() + per_y.error()) * max;
+        let magnitude = constant.value().abs() + per_y.value().abs() * max;
+        let magnitude_of_x = per_x.value().abs() * max;
+        // In columns the root is N/2 − (constant + per_y · Y)/(3 · per_x), and moves by the same
+        // part of the sum's error. The inverse of 3 · per_x rounds by 2u, the root's two numbers by
+        // 2u more, the product with Y and the sum with it by u each: less than 8u of the terms'
         // magnitudes, and of N/2 and the root, which is below 3N where it matters.
-        let inverse = 1.0 / (PIXEL * column.value());
+        let inverse = 1.0 / (PIXEL * per_x.value());
         let root = Root {
             at: grid.half - constant.value() * inverse,
-            per_y: -(row.value() * inverse),
+            per_y: -(per_y.value() * inverse),
             slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
                 + 16.0 * U * 3.0 * f64::from(grid.size))
                 * INFLATION,
@@ -93,8 +93,8 @@ impl HalfPlane {
         };
         HalfPlane {
             constant,
-            column,
-            row,
+            per_x,
+            per_y,
             closed,
             border,
         }
@@ -119,7 +119,7 @@ impl HalfPlane {
 
     /// Whether the pixel at X, Y is in the half-plane; `None` where that is in doubt.
     fn decide(&self, x: f64, y: f64) -> Option<bool> {
-        let sum = self.constant + self.row * Bounded::exact(y) + self.column * Bounded::exact(x);
+        let sum = self.constant + self.per_y * Bounded::exact(y) + self.per_x * Bounded::exact(x);
         let sign = sum.sign().ok()?;
         Some(sign.is_gt() || (self.closed && sign.is_eq()))
     }
@@ -160,12 +160,12 @@ impl HalfPlane {
                 certain[1] = certain[1].min(root_column - root.slack);
             }
             Border::Horizontal { error } => {
-                let sum = y * self.row.value() + self.constant.value();
+                let sum = y * self.per_y.value() + self.constant.value();
                 let is_in = sum.simd_gt(*error);
                 if !is_in.all_true() {
                     let mut is_in = is_in.to_bitmask();
                     let mut is_out = sum.simd_lt(-*error).to_bitmask();
-                    if self.column.is_zero() {
+                    if self.per_x.is_zero() {
                         for (lane, &y) in y.as_slice().iter().enumerate() {
                             match self.decide(0.0, y) {
                                 Some(true) => is_in |= 1 << lane,

@@ -9,7 +9,7 @@
 //! centre. In a row of pixels Y is fixed, and the row's edges are roots of these polynomials.
 //!
 //! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
-//! the bound are decided; the columns within it, rarely one, are decided one by one.
+//! the bound need no test. The columns within it, rarely one, are tested one by one.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;

@@ -196,7 +196,7 @@ impl<'p, 's> Appearances<'p, 's> {
                 .clipped(outline);
             Some(Pair {
                 front_faces: (index(i)?, index(j)?),
-                first: parts.edge_table.add(crease, RegionKind::Crease),
+                crease: parts.edge_table.add(crease, RegionKind::Crease),
             })
         });
         let pairs = collect(arena, pairs);

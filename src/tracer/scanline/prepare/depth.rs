@@ -32,11 +32,11 @@ pub(crate) enum Depth<'f> {
     FrontFaces(&'f [FaceDepth]),
 }
 
-/// The parameter at which eye rays meet the plane of a face: constant + column · X + row · Y.
+/// The parameter at which eye rays meet the plane of a face: constant + per_x · X + per_y · Y.
 pub(crate) struct FaceDepth {
     constant: f64,
-    column: f64,
-    row: f64,
+    per_x: f64,
+    per_y: f64,
     /// A bound on the error anywhere on the screen.
     error: f64,
     /// The plane.
@@ -69,8 +69,8 @@ impl FaceDepth {
     /// Bounds on the depth in a rectangle.
     pub(crate) fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
         // Rounding keeps order: the extremes of a linear function are at corners.
-        let [left, right] = x.map(|x| self.constant + self.column * x);
-        let [low, high] = y.map(|y| self.row * y);
+        let [left, right] = x.map(|x| self.constant + self.per_x * x);
+        let [low, high] = y.map(|y| self.per_y * y);
         bounds(
             left.min(right) + low.min(high) - self.error,
             left.max(right) + low.max(high) + self.error,
@@ -190,11 +190,11 @@ pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, F
         per_y: eye.per_y + d * depths[2],
         support: face.support,
     };
-    let [constant, column, row] = depths.map(Bounded::value);
+    let [constant, per_x, per_y] = depths.map(Bounded::value);
     let depth = FaceDepth {
         constant,
-        column,
-        row,
+        per_x,
+        per_y,
         error: (errors + 8.0 * U * magnitudes) * INFLATION,
         support: face.support,
     };

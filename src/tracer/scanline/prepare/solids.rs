@@ -56,5 +56,5 @@ pub(crate) struct Pair {
     /// Their indices; the first has the lower face number.
     pub(crate) front_faces: (usize, usize),
     /// The number of the region in which eye rays enter the first one last.
-    pub(crate) first: usize,
+    pub(crate) crease: usize,
 }

@@ -22,7 +22,7 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
 use crate::tracer::view_space::PIXEL;
 
-/// Rounding moves a root by less than so many columns, or else the guess is rejected.
+/// If rounding moves a root by more columns than this, the guess is rejected.
 const NUDGE: f64 = 1.0 / (1 << 20) as f64;
 
 /// A half-open range of columns in each row of a band: where it begins, and where it ends.

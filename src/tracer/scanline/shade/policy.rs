@@ -12,7 +12,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::lane::Lane;
 
 /// The arithmetic that a kernel shades spheres with.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(in crate::tracer) enum Precision {
     /// f32.
     Single,
@@ -82,8 +82,8 @@ pub(crate) trait Policy<S: Simd> {
         factor
     }
 
-    /// The highlights, where `bright` has a bit for each pixel that may have one. Others are at
-    /// most 2⁻⁵⁹: the bounds on samples allow for that, and without bounds they are made 0.
+    /// The highlights. `bright` has a bit for each pixel that may have one above 2⁻⁵⁹. Without
+    /// bounds all others are made 0; with bounds they are kept, because the bounds allow for them.
     #[inline(always)]
     fn where_bright(_: S, highlight: LaneVector<S, Self>, _: u64) -> LaneVector<S, Self> {
         highlight

@@ -74,8 +74,9 @@ impl LinearForm {
         self.constant + self.m * m
     }
 
-    /// The interval of the values that f64 computes for the pixels of a box. Rounding is monotonic,
-    /// so the same operations on the ends of the coordinates give the ends of the interval.
+    /// The interval of the values that f64 computes for the pixels of a box without fused
+    /// operations. Rounding is monotonic, so the same operations on the ends of the coordinates
+    /// give the ends of the interval. `error` bounds how far either of them is from the truth.
     pub(crate) fn range(&self, hits: &HitBox) -> (f64, f64) {
         let ends = |factor: f64, (low, high): (f64, f64)| {
             let (a, b) = (low * factor, high * factor);
@@ -338,7 +339,9 @@ impl SphereConstants {
         }
     }
 
-    /// The box of the pixels in these intervals of X and Y.
+    /// The box of the pixels in these intervals of X and Y. m and q are linear in Y and X, and s² =
+    /// R² − m² − q² falls with |m| and |q|: so the ends of each are those of the pixels at the ends
+    /// of the intervals, or at m = 0 and q = 0. Rounding is monotonic, as in [`LinearForm::range`].
     pub(crate) fn hit_box(&self, x: (f64, f64), y: (f64, f64)) -> HitBox {
         let ends = |(a, b): (f64, f64)| if a < b { (a, b) } else { (b, a) };
         let m = ends((self.m.at(y.0), self.m.at(y.1)));

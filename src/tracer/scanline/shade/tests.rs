@@ -18,7 +18,7 @@ const SIZE: u32 = 70;
 #[derive(Default)]
 struct Counts {
     certain: usize,
-    tally: usize,
+    in_doubt: usize,
 }
 
 /// Shades all of a sphere, hidden or not, with all casters for every pixel. Certain samples are
@@ -59,7 +59,7 @@ fn check(
                 continue;
             }
             if scratch.doubts.contains(&column) {
-                counts.tally += 1;
+                counts.in_doubt += 1;
                 continue;
             }
             assert_eq!(
@@ -90,7 +90,10 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
             }
         });
         // A shader that is certain of nothing would pass, too.
-        let Counts { certain, tally } = counts;
-        assert!(certain > 1000 && tally < certain / 50, "{certain}, {tally}");
+        let Counts { certain, in_doubt } = counts;
+        assert!(
+            certain > 1000 && in_doubt < certain / 50,
+            "{certain}, {in_doubt}"
+        );
     }
 }

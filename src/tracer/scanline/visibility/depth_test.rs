@@ -32,7 +32,7 @@ enum Front {
     Candidate(usize),
     /// The surface, or where that is not met either, the background.
     Rest,
-    /// In doubt: it begins before this depth.
+    /// In doubt: whatever is in front begins before this depth.
     Before(f64),
 }
 

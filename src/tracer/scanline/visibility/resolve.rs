@@ -94,7 +94,7 @@ fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) 
             (None, shown)
         }
         Appearance::FrontFaces(front_faces, pairs) => {
-            let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.first));
+            let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.crease));
             match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
                 Ok(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
                 Err(()) => (None, Shown::InDoubt),
