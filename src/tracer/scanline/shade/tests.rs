@@ -19,10 +19,12 @@ const SIZE: u32 = 70;
 struct Counts {
     certain: usize,
     in_doubt: usize,
+    /// Casters whose shadow certainly misses a row.
+    missing: usize,
 }
 
-/// Shades all of a sphere, hidden or not, with all casters for every pixel. Certain samples are
-/// compared with those of pixels that show the sphere.
+/// Shades all of a sphere, hidden or not: each row with all casters, and with those that may cast a
+/// shadow on the row's box. Certain samples are compared with those of pixels that show the sphere.
 fn check(
     tracer: &RowTracer<'_, Ladder<'_>>,
     shaded: &ShadedSphere<'_>,
@@ -32,17 +34,27 @@ fn check(
     let frame = &tracer.frame;
     let mut cache = SphereCache::default();
     cache.begin(frame.shaded_spheres);
-    for row in 0..SIZE {
+    let rows = (0..SIZE).flat_map(|row| [(row, false), (row, true)]);
+    for (row, only_near) in rows {
         let columns = cache.of(shaded, row, level, frame.grid);
         let (from, to) = columns.shadeable;
+        if from == to {
+            continue;
+        }
         let count = (to - from) as usize;
         let mut samples = vec![0.0; 3 * count];
         let mut decisions = vec![Decision::Background; count];
         let mut scratch = RunScratch::default();
-        scratch.casters.extend(0..shaded.casters.len());
+        let x = [from, to - 1].map(|column| frame.grid.coordinate(column));
+        let y = frame.grid.coordinate(row);
+        let hits = shaded.constants.hit_box((x[0], x[1]), (y, y));
+        let casters = shaded.casters.iter().enumerate();
+        let casters = casters.filter(|(_, caster)| !only_near || !caster.misses(&hits));
+        scratch.casters.extend(casters.map(|(number, _)| number));
+        counts.missing += shaded.casters.len() - scratch.casters.len();
         let mut run = Run {
             grid: frame.grid,
-            y: frame.grid.coordinate(row),
+            y,
             from,
             zones: columns.zones,
             bright: columns.bright,
@@ -90,10 +102,15 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
             }
         });
         // A shader that is certain of nothing would pass, too.
-        let Counts { certain, in_doubt } = counts;
+        let Counts {
+            certain,
+            in_doubt,
+            missing,
+        } = counts;
         assert!(
             certain > 1000 && in_doubt < certain / 50,
             "{certain}, {in_doubt}"
         );
+        assert!(missing > 1000, "{missing}");
     }
 }
