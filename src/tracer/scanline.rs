@@ -68,8 +68,6 @@
 //! sphere together at the end of some rows.
 
 mod active;
-#[cfg(test)]
-mod bounds_tests;
 mod edges;
 mod grid;
 mod prepare;

@@ -9,3 +9,4 @@ pub(super) mod outline;
 pub(super) mod shadows;
 pub(super) mod solids;
 pub(super) mod surface;
+pub(super) mod surface_plane;

@@ -1,5 +1,7 @@
 //! Spheres: the pixels of a span that shows a sphere are shaded many at a time.
 
+#[cfg(test)]
+mod bounds_tests;
 pub(super) mod caster;
 pub(super) mod columns;
 pub(super) mod equation;

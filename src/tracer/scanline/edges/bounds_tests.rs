@@ -18,6 +18,7 @@ use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::depth::{Depth, Rectangle, face_plane, screen_plane};
+use crate::tracer::scanline::prepare::surface_plane::{SurfaceDepth, surface_plane};
 
 const SIZE: u32 = 500;
 
@@ -28,6 +29,8 @@ struct Shares {
     half_plane: f64,
     sphere_depth: f64,
     face_depth: f64,
+    surface_depth: f64,
+    surface_point: f64,
 }
 
 /// The distance of the truth from the middle of an enclosure, over half its width; 0 where it is
@@ -155,6 +158,33 @@ fn check_tetrahedra(
     }
 }
 
+fn check_surface(
+    bounded: &Picture<'_, Bounded>,
+    truth: &Picture<'_, DoubleDouble>,
+    grid: Grid,
+    shares: &mut Shares,
+) {
+    let square = bounded.surface.as_ref().unwrap().square;
+    let exact = truth.surface.as_ref().unwrap().square;
+    let (depth, plane) = (
+        SurfaceDepth::new(&square, grid),
+        surface_plane(&square, grid),
+    );
+    for row in (0..SIZE).step_by(7) {
+        let (column, y) = (row / 3, grid.coordinate(row));
+        let ray = truth.transform.eye_ray(column, row);
+        let (t, point) = truth.transform.on_surface(&exact, &ray, row);
+        let (lower, upper) = depth.at(y);
+        shares.surface_depth = shares.surface_depth.max(share(t, lower, upper));
+        let [x, y] = [grid.coordinate(column), y].map(Bounded::exact);
+        let seen = plane.origin + plane.per_x * x + plane.per_y * y;
+        for (truth, seen) in [(point.x, seen.x), (point.y, seen.y), (point.z, seen.z)] {
+            let share = share(truth, seen.at_least(), seen.at_most());
+            shares.surface_point = shares.surface_point.max(share);
+        }
+    }
+}
+
 #[test]
 fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
     let grid = Grid::new(SIZE);
@@ -167,18 +197,21 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
         };
         let center = numbers(3, 3.0);
         let radius = 0.4 + numbers(1, 4.0)[0].abs();
+        let height = numbers(1, 1.0)[0];
         let vertices: Vec<Vec<f64>> = (0..4).map(|_| numbers(3, 3.6)).collect();
         let text = format!(
             "[[sphere]]\ncenter = {center:?}\nradius = {radius:?}\ncolor = [0.5, 0.5, 0.5]\n\
-             [[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n"
+             [[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n\
+             [surface]\nheight = {height:?}\nhalf_width = 1.0\n"
         );
         let scene = Scene::from_toml(&text).unwrap();
         let alpha = numbers(1, 3.0)[0];
         let (arena, allocator) = (Arena::default(), Bump::new());
-        let ladder = Ladder::new(&scene, Stage::Shading, alpha, SIZE, Rung::Hardware, &arena);
+        let ladder = Ladder::new(&scene, Stage::Shadow, alpha, SIZE, Rung::Hardware, &arena);
         let truth = ladder.picture::<DoubleDouble>(&&allocator);
         check_spheres(ladder.bounded(), &truth, grid, &mut shares);
         check_tetrahedra(ladder.bounded(), &truth, grid, &mut shares);
+        check_surface(ladder.bounded(), &truth, grid, &mut shares);
     }
     // A bound that were ten times too small would be exceeded.
     let Shares {
@@ -186,7 +219,10 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
         half_plane,
         sphere_depth,
         face_depth,
+        surface_depth,
+        surface_point,
     } = shares;
-    let least = outline.min(half_plane).min(sphere_depth).min(face_depth);
+    let solids = outline.min(half_plane).min(sphere_depth).min(face_depth);
+    let least = solids.min(surface_depth).min(surface_point);
     assert!(least > 0.1 && least < 1.0, "{shares:?}");
 }

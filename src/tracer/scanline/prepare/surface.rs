@@ -4,14 +4,11 @@ use std::cell::LazyCell;
 
 use bumpalo::collections::Vec as Growing;
 
-use crate::number::rounding::{INFLATION, U};
-use crate::number::{Bounded, Real};
+use crate::number::Bounded;
 use crate::scene::{Side, Solid, SurfaceCasters};
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::{Picture, SeenSurface};
 use crate::tracer::scanline::edges::ellipse::ParallelLines;
-use crate::tracer::scanline::edges::half_plane::HalfPlane;
-use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind};
 use crate::tracer::scanline::prepare::appearance::prepare_solids;
@@ -20,15 +17,16 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::shadows::shadows_on;
 use crate::tracer::scanline::prepare::solids::PreparedSolids;
+use crate::tracer::scanline::prepare::surface_plane::{
+    SurfaceDepth, sides_on_screen, surface_plane,
+};
 use crate::tracer::scanline::write::paint::PaintNumber;
-use crate::tracer::vector::Vector;
-use crate::tracer::view_space::{EYE_Y, EYE_Z};
 
 /// The surface of a frame, prepared for its rows.
 pub(crate) struct PreparedSurface<'f> {
     /// The solids that are seen in it, if it mirrors.
     pub(crate) mirrored: Option<PreparedSolids<'f>>,
-    depth: LevelDepth,
+    depth: SurfaceDepth,
     /// What it shows in the light where it mirrors nothing.
     pub(crate) paint: PaintNumber,
     /// What it shows in shadow.
@@ -46,47 +44,18 @@ impl<'f> PreparedSurface<'f> {
         parts: &mut Builder<'f, '_>,
     ) -> Self {
         let grid = parts.grid;
-        let zero = Bounded::exact(0.0);
-        let [one, three, ten] = [1.0, EYE_Y, EYE_Z].map(Bounded::exact);
-        let third = one / three;
-        // `ViewTransform::on_surface` as a linear function of X and Y: t = Y/3 − (N/2) · height,
-        // and z is 3N/2 − 10 t.
-        let height = surface.square.height_in_pixels;
-        let plane = PixelPlane {
-            origin: Vector::new(
-                zero,
-                surface.square.height,
-                Bounded::exact(grid.max) + ten * height,
-            ),
-            per_x: Vector::new(one, zero, zero),
-            per_y: Vector::new(zero, zero, -(ten * third)),
-            support: Some(surface.square.support),
-        };
-        // Scaled by 3, no coefficient is a third, which would round: at α = 0 a side of the square
-        // may pass through all pixels of a row exactly.
-        let scaled = [
-            plane.origin * three,
-            plane.per_x * three,
-            Vector::new(zero, zero, -ten),
-        ];
-        let sides = surface
-            .square
-            .sides(scaled, surface.square.half_width * three);
-        let sides =
-            sides.map(|[constant, column, row]| HalfPlane::new(constant, column, row, true, grid));
+        let plane = surface_plane(&surface.square, grid);
         let scene = picture.scene;
-        let magnitude = height.value().abs() + grid.max;
         // A ray to the light that rises from the surface has all solids above the surface ahead. A
         // solid that touches the ray's origin is seen there itself, and not the surface.
         let rises = scene.light().rise().is_gt();
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
-        let depth = LevelDepth {
-            constant: -height.value(),
-            per_y: third.value(),
-            error: (height.error() + 8.0 * U * magnitude) * INFLATION,
-        };
+        let depth = SurfaceDepth::new(&surface.square, grid);
         let rows = surface.extent.rows(grid.size);
-        let outline = Region::new(parts.arena.alloc(sides), None, grid).within(rows);
+        let sides = parts
+            .arena
+            .alloc(sides_on_screen(&surface.square, &plane, grid));
+        let outline = Region::new(sides, None, grid).within(rows);
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();
         let casters = casters.into_iter().flat_map(SurfaceCasters::all).copied();
@@ -130,21 +99,5 @@ impl<'f> PreparedSurface<'f> {
     /// Bounds on the parameter at which the eye rays at Y reach the surface.
     pub(crate) fn depth_at(&self, y: f64) -> (f64, f64) {
         self.depth.at(y)
-    }
-}
-
-/// The parameter at which eye rays reach a level plane: constant + per_y · Y.
-struct LevelDepth {
-    constant: f64,
-    per_y: f64,
-    /// A bound on the error in any row.
-    error: f64,
-}
-
-impl LevelDepth {
-    /// Bounds on the parameter at Y.
-    fn at(&self, y: f64) -> (f64, f64) {
-        let depth = self.constant + self.per_y * y;
-        (depth - self.error, depth + self.error)
     }
 }

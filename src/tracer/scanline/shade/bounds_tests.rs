@@ -304,10 +304,10 @@ fn every_error_is_within_its_bound() {
     let mut found = Found::default();
     for text in [
         "",
-        include_str!("../../../tests/scenes/highlights.toml"),
-        include_str!("../../../tests/scenes/exponent_million.toml"),
-        include_str!("../../../tests/scenes/far_spheres.toml"),
-        include_str!("../../../tests/scenes/wide_light.toml"),
+        include_str!("../../../../tests/scenes/highlights.toml"),
+        include_str!("../../../../tests/scenes/exponent_million.toml"),
+        include_str!("../../../../tests/scenes/far_spheres.toml"),
+        include_str!("../../../../tests/scenes/wide_light.toml"),
     ] {
         let scene = match text {
             "" => Scene::builtin(),
