@@ -16,6 +16,7 @@ mod file;
 mod rational;
 mod rules;
 mod solid;
+mod surface_casters;
 
 use std::cmp::Ordering;
 use std::io::Read;
@@ -25,12 +26,12 @@ use std::sync::LazyLock;
 use glam::DVec3;
 
 pub use builder::SceneBuilder;
-pub(crate) use casters::SurfaceCasters;
 pub use error::{SceneError, SceneFileError};
 pub(crate) use exact::{Facts, Side, Support};
 pub(crate) use faces::{EDGES, FACES};
 pub use rules::MAX_SOLIDS;
 pub(crate) use solid::Solid;
+pub(crate) use surface_casters::SurfaceCasters;
 
 /// The built-in scene, as the TOML text that it is read from.
 pub const BUILTIN_TOML: &str = include_str!("scene/builtin.toml");

@@ -143,8 +143,8 @@ impl Expression {
     fn ask<T>(self, answer: impl Fn(&Interval) -> Option<T>) -> Result<T, Enclosure> {
         SESSION.with_borrow_mut(|session| {
             let mut enclosure = None;
-            for level in 0..BITS.len() {
-                enclosure = session.evaluate(self.place, level);
+            for precision in 0..BITS.len() {
+                enclosure = session.evaluate(self.place, precision);
                 if let Some(answer) = enclosure.as_deref().and_then(&answer) {
                     return Ok(answer);
                 }
@@ -187,60 +187,60 @@ impl Session {
     }
 
     /// What is at `place`, with the bits that have this number.
-    fn evaluate(&mut self, place: usize, level: usize) -> Enclosure {
-        if let Some(known) = &self.evaluated[place][level] {
+    fn evaluate(&mut self, place: usize, precision: usize) -> Enclosure {
+        if let Some(known) = &self.evaluated[place][precision] {
             return known.clone();
         }
-        let bits = BITS[level];
+        let bits = BITS[precision];
         let enclosure = match self.operations[place] {
             Operation::Exact(value) => Some(Arc::new(Interval::exact(value, bits))),
-            Operation::Sine(alpha) => self.turn(alpha, level)[0].clone(),
-            Operation::Cosine(alpha) => self.turn(alpha, level)[1].clone(),
-            Operation::Sum(a, b) => self.both(a, b, level, |a, b| Some(a.plus(b))),
-            Operation::Product(a, b) => self.both(a, b, level, |a, b| Some(a.times(b))),
-            Operation::Quotient(a, b) => self.both(a, b, level, Interval::over),
-            Operation::Negation(a) => self.one(a, level, Interval::negated),
-            Operation::Root(a) => self.one(a, level, Interval::root),
-            Operation::OneMinusToThe(a, exponent) => self.one(a, level, |a| {
+            Operation::Sine(alpha) => self.turn(alpha, precision)[0].clone(),
+            Operation::Cosine(alpha) => self.turn(alpha, precision)[1].clone(),
+            Operation::Sum(a, b) => self.both(a, b, precision, |a, b| Some(a.plus(b))),
+            Operation::Product(a, b) => self.both(a, b, precision, |a, b| Some(a.times(b))),
+            Operation::Quotient(a, b) => self.both(a, b, precision, Interval::over),
+            Operation::Negation(a) => self.one(a, precision, Interval::negated),
+            Operation::Root(a) => self.one(a, precision, Interval::root),
+            Operation::OneMinusToThe(a, exponent) => self.one(a, precision, |a| {
                 Interval::exact(1.0, bits)
                     .plus(&a.negated())
                     .clipped_power(exponent)
             }),
         };
-        self.evaluated[place][level] = Some(enclosure.clone());
+        self.evaluated[place][precision] = Some(enclosure.clone());
         enclosure
     }
 
     fn one(
         &mut self,
         a: usize,
-        level: usize,
+        precision: usize,
         operation: impl Fn(&Interval) -> Interval,
     ) -> Enclosure {
-        self.evaluate(a, level).map(|a| Arc::new(operation(&a)))
+        self.evaluate(a, precision).map(|a| Arc::new(operation(&a)))
     }
 
     fn both(
         &mut self,
         a: usize,
         b: usize,
-        level: usize,
+        precision: usize,
         operation: impl Fn(&Interval, &Interval) -> Option<Interval>,
     ) -> Enclosure {
-        let (a, b) = (self.evaluate(a, level)?, self.evaluate(b, level)?);
+        let (a, b) = (self.evaluate(a, precision)?, self.evaluate(b, precision)?);
         operation(&a, &b).map(Arc::new)
     }
 
-    fn turn(&mut self, alpha: f64, level: usize) -> [Enclosure; 2] {
+    fn turn(&mut self, alpha: f64, precision: usize) -> [Enclosure; 2] {
         // An animation brings new angles for ever.
         if self.turns.len() > 64 {
             self.turns.clear();
         }
         let turn = self
             .turns
-            .entry((alpha.to_bits(), level))
+            .entry((alpha.to_bits(), precision))
             .or_insert_with(|| {
-                let angle = Interval::exact(alpha, BITS[level]);
+                let angle = Interval::exact(alpha, BITS[precision]);
                 let ((sin_low, cos_low), (sin_high, cos_high)) =
                     (angle.low.sin_cos(), angle.high.sin_cos());
                 let sine = Interval {
@@ -288,10 +288,10 @@ impl Interval {
 
     /// The extremes of a product lie at ends of both factors, and the factors' signs say at which.
     fn times(&self, other: &Interval) -> Interval {
-        if self.is_negative() {
+        if self.is_at_most_zero() {
             return self.negated().times(other).negated();
         }
-        if self.is_positive() {
+        if self.is_at_least_zero() {
             let (a, b) = (self, other);
             return Interval {
                 low: if b.low >= FBig::<Down>::ZERO {
@@ -306,7 +306,7 @@ impl Interval {
                 },
             };
         }
-        if other.is_positive() || other.is_negative() {
+        if other.is_at_least_zero() || other.is_at_most_zero() {
             return other.times(self);
         }
         let (a, b) = (self, other);
@@ -342,12 +342,12 @@ impl Interval {
         })
     }
 
-    fn is_positive(&self) -> bool {
+    fn is_at_least_zero(&self) -> bool {
         self.low >= FBig::<Down>::ZERO
     }
 
-    fn is_negative(&self) -> bool {
-        self.high <= FBig::<Up>::ZERO && !self.is_positive()
+    fn is_at_most_zero(&self) -> bool {
+        self.high <= FBig::<Up>::ZERO && !self.is_at_least_zero()
     }
 
     /// The root of a number that is not negative, whatever its enclosure says.

@@ -1,14 +1,15 @@
 //! What is found out about a scene once: facts that exact rational arithmetic decides, and lists of
-//! what may shade what, found in f64 with room to spare.
+//! what may cast a shadow on what, found in f64 with room to spare.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::casters::{Casters, SurfaceCasters};
+use super::casters::Casters;
 use super::enclosed::enclosed;
 use super::rational::{Plane, cross, dot, exact, minus, sign};
+use super::surface_casters::SurfaceCasters;
 use super::{Sphere, Surface, Tetrahedron};
 
 /// The sign of six times the signed volume, (b − a) · ((c − a) × (d − a)): equal where the four

@@ -19,11 +19,11 @@ use crate::stage::Stage;
 pub(crate) struct Mistake {
     /// n·l has the wrong sign.
     pub(crate) shading_reversed: bool,
-    /// Where solids that shade a point stand.
+    /// Where the solids stand that cast a shadow on a point.
     pub(crate) solids: Toward,
-    /// Where the surface lies if it shades a point of a solid.
+    /// Where the surface lies if it casts a shadow on a point of a solid.
     pub(crate) surface: Toward,
-    /// Every solid shades itself.
+    /// Every solid casts a shadow on itself.
     pub(crate) own_shadow: bool,
     /// Which solids are hit where a ray leaves them.
     pub(crate) far: Far,

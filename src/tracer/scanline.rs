@@ -21,8 +21,8 @@
 //!       fill    |  fill   |    fill    | shade    |  fill   |     fill     |  fill
 //! ```
 //!
-//! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that are not hidden
-//!   (`culling`), their colours (`appearance`) and shadows (`shadows`), and the surface
+//! - `prepare/` makes a frame: the solids and mirror images (`outline`), those that others do not
+//!   hide (`culling`), their colours (`appearance`) and shadows (`shadows`), and the surface
 //!   (`surface`). The result is plain data (`frame`): regions and paints.
 //! - `edges/` crosses regions with rows. Eye rays are parallel, and so are rays to the light: every
 //!   silhouette, edge of a face, outline of a shadow on a plane or of a mirror image is a straight
@@ -49,7 +49,8 @@
 //!
 //! - in `scene`: a type and its refusals (`file`, `builder`, `rules`), a place in the numbering
 //!   (`solid`), a bounding ball (`bounding_ball`), a test whether it lies inside of others
-//!   (`enclosed`), what is exactly decided about it (`exact`), what may shade it (`casters`);
+//!   (`enclosed`), what is exactly decided about it (`exact`), what may cast a shadow on it
+//!   (`casters`);
 //! - in `tracer`: its intersection with a line, in a file beside `tracer/sphere.rs`; `view`,
 //!   `extent`, `palette` and `decision` name every kind of solid (what is seen without a face is a
 //!   sphere), and elsewhere the compiler names each `match` on a `Solid`;

@@ -23,7 +23,7 @@ pub(crate) enum Shown {
 pub(crate) enum Visible {
     /// One thing in every row.
     Only(Shown),
-    /// The nearest of some solids, by the depth test of this number: each row settles it.
+    /// The nearest of some solids, by the depth test of this number, which each row carries out.
     DepthTest(u32),
 }
 
