@@ -75,6 +75,25 @@ impl Side {
     }
 }
 
+/// The side of a level plane that each solid is on, spheres first.
+fn sides(spheres: &[Sphere], tetrahedra: &[Tetrahedron], height: f64) -> Vec<Side> {
+    let of_sphere = |sphere: &Sphere| {
+        let [y, radius, height] = exact(DVec3::new(sphere.center.y, sphere.radius, height));
+        let lowest = sign(&(&y - &radius - &height));
+        Side::new(lowest, sign(&(y + radius - height)))
+    };
+    let of_tetrahedron = |tetrahedron: &Tetrahedron| {
+        let ys = tetrahedron.vertices.map(|vertex| vertex.y).into_iter();
+        let against = |y: f64| y.partial_cmp(&height).unwrap_or(Ordering::Equal);
+        let lowest = against(ys.clone().fold(f64::INFINITY, f64::min));
+        Side::new(lowest, against(ys.fold(f64::NEG_INFINITY, f64::max)))
+    };
+    let spheres = spheres.iter().map(of_sphere);
+    spheres
+        .chain(tetrahedra.iter().map(of_tetrahedron))
+        .collect()
+}
+
 impl Facts {
     /// `right_handed` has an entry for each tetrahedron; `direction` is the way the light travels.
     pub(super) fn new(
@@ -88,30 +107,10 @@ impl Facts {
             count += 1;
             Support(count)
         };
-        let side_of_sphere = |sphere: &Sphere, surface: &Surface| {
-            let [y, radius, height] =
-                exact(DVec3::new(sphere.center.y, sphere.radius, surface.height));
-            Side::new(
-                sign(&(&y - &radius - &height)),
-                sign(&(y + radius - height)),
-            )
+        let sides = match surface {
+            Some(surface) => sides(spheres, tetrahedra, surface.height),
+            None => vec![Side::Above; spheres.len() + tetrahedra.len()],
         };
-        let side_of_tetrahedron = |tetrahedron: &Tetrahedron, surface: &Surface| {
-            let ys = tetrahedron.vertices.map(|vertex| vertex.y);
-            let against = |y: f64| y.partial_cmp(&surface.height).unwrap_or(Ordering::Equal);
-            Side::new(
-                against(ys.into_iter().fold(f64::INFINITY, f64::min)),
-                against(ys.into_iter().fold(f64::NEG_INFINITY, f64::max)),
-            )
-        };
-        let of_surface = |side: &dyn Fn(&Surface) -> Side| surface.map_or(Side::Above, side);
-        let sides = spheres
-            .iter()
-            .map(|sphere| of_surface(&|surface| side_of_sphere(sphere, surface)))
-            .chain(tetrahedra.iter().map(|tetrahedron| {
-                of_surface(&|surface| side_of_tetrahedron(tetrahedron, surface))
-            }))
-            .collect();
         let enclosed = enclosed(spheres, tetrahedra);
         let surface_casters = surface.map(|surface| {
             SurfaceCasters::new(spheres, tetrahedra, surface, -direction, &enclosed)

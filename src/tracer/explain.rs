@@ -10,7 +10,7 @@ use super::line::{Hit, Line};
 use super::pixel::{Picture, Pixel};
 use super::vector::Vector;
 use super::view::{SolidKinds, View};
-use super::view_space::{EYE_SQUARED, from_middle, turn_back};
+use super::view_space::{EYE_SQUARED, from_middle, reflect, reflect_direction, turn_back};
 use crate::image::display_byte;
 use crate::number::Real;
 use crate::scene::{Scene, Solid};
@@ -143,8 +143,7 @@ impl<R: Real> Picture<'_, R> {
                 self.explain_shadow(text, "the surface", &casters);
                 let mirrored_ray = surface.square.mirrored_ray(point);
                 if let (Decision::Mirrored(seen), Some(mirror)) = (decision, &surface.mirror) {
-                    let [x, y, z] = self.unit(ray.direction.vector);
-                    let r = ShortTriple([x, -y, z]);
+                    let r = ShortTriple(self.unit(reflect_direction(ray.direction.vector, true)));
                     say(text, "r", format!("{r}  the way the mirrored ray goes"));
                     let (pixel, kinds) = ((column, row), SolidKinds::All);
                     for (solid, hit) in mirror.view.hits(pixel, &mirrored_ray, true, kinds)? {
@@ -194,17 +193,10 @@ impl<R: Real> Picture<'_, R> {
             .into_iter()
             .find(|(index, _)| *index == solid);
         let Some((_, hit)) = only else { return Ok(()) };
-        let unit = |vector: Vector<R>| {
-            let [x, y, z] = self.unit(vector);
-            ShortTriple([x, if mirrored { -y } else { y }, z])
-        };
-        let height = self
-            .surface
-            .as_ref()
-            .map_or(0.0, |surface| self.in_scene(surface.square.height));
-        let [x, y, z] = self.point(hit.point);
-        let y = if mirrored { 2.0 * height - y } else { y };
-        say(text, "point", ShortTriple([x, y, z]));
+        let unit = |vector: Vector<R>| ShortTriple(self.unit(reflect_direction(vector, mirrored)));
+        let surface = self.surface.as_ref().filter(|_| mirrored);
+        let point = reflect(hit.point, surface.map(|surface| surface.square.height));
+        say(text, "point", ShortTriple(self.point(point)));
         say(text, "n", unit(hit.normal.vector));
         if self.stage < Stage::Shading {
             return Ok(());

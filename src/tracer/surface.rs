@@ -41,24 +41,24 @@ impl<R: Real> Surface<R> {
         }
     }
 
-    /// Four linear functions of X and Y that are not negative in the square, each as a constant and
-    /// the coefficients of X and Y, for the points `origin` + X · `per_column` + Y · `per_row` of
-    /// its plane. `half` is half the length of a side. Points and `half` may be scaled by one
-    /// positive factor.
-    pub(super) fn sides(
-        &self,
-        [origin, per_column, per_row]: [Vector<R>; 3],
-        half: R,
-    ) -> [[R; 3]; 4] {
-        let [a, b] = self.along_sides(origin);
-        let [a_column, b_column] = self.along_sides(per_column);
-        let [a_row, b_row] = self.along_sides(per_row);
-        [
-            [half - a, -a_column, -a_row],
-            [half + a, a_column, a_row],
-            [half - b, -b_column, -b_row],
-            [half + b, b_column, b_row],
-        ]
+    /// How far a point of the square's plane is inside of each side. `half` is half the length of a
+    /// side; the point and `half` may be scaled by one positive factor.
+    fn inside_of_sides(&self, point: Vector<R>, half: R) -> [R; 4] {
+        // Both sides are told instead of |coordinate|: on the middle line the coordinate's sign may
+        // be in doubt.
+        let [a, b] = self.along_sides(point);
+        [half - a, half + a, half - b, half + b]
+    }
+
+    /// The same for the points `origin` + X · `per_x` + Y · `per_y`: linear functions of X and Y,
+    /// each as a constant and the coefficients of X and Y.
+    pub(super) fn sides(&self, [origin, per_x, per_y]: [Vector<R>; 3], half: R) -> [[R; 3]; 4] {
+        let constants = self.inside_of_sides(origin, half);
+        let slopes = [per_x, per_y].map(|slope| {
+            let [a, b] = self.along_sides(slope);
+            [-a, a, -b, b]
+        });
+        std::array::from_fn(|side| [constants[side], slopes[0][side], slopes[1][side]])
     }
 
     /// Whether a point of the square's plane lies in the square; its border belongs to it.
@@ -68,10 +68,8 @@ impl<R: Real> Surface<R> {
 
     /// The same for a point and a square that are both scaled by one positive factor.
     fn contains_scaled(&self, point: Vector<R>, half_width: R) -> Result<bool, R::Doubt> {
-        // Both sides are tested instead of |coordinate|: on the middle line the coordinate's sign
-        // may be in doubt.
-        let [a, b] = self.along_sides(point);
-        all([a, -a, b, -b].map(|coordinate| Ok((half_width - coordinate).sign()?.is_ge())))
+        let sides = self.inside_of_sides(point, half_width);
+        all(sides.map(|inside| Ok(inside.sign()?.is_ge())))
     }
 
     /// The half-spaces whose intersection holds the square's shadow: all points whose ray in the

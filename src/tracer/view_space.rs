@@ -54,6 +54,14 @@ pub(super) fn reflect<R: Real>(point: Vector<R>, mirror_height: Option<R>) -> Ve
     }
 }
 
+/// The reflection of a direction in a horizontal plane, where it is `mirrored`.
+pub(super) fn reflect_direction<R: Real>(direction: Vector<R>, mirrored: bool) -> Vector<R> {
+    match mirrored {
+        true => Vector::new(direction.x, -direction.y, direction.z),
+        false => direction,
+    }
+}
+
 /// The direction of every eye ray: −10 w, of length √109.
 pub(super) fn eye_direction<R: Real>() -> Direction<R> {
     let vector = Vector::new(R::exact(0.0), R::exact(-EYE_Y), R::exact(-EYE_Z));

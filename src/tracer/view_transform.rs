@@ -7,7 +7,9 @@ use super::shading::halfway;
 use super::surface::Surface;
 use super::tetrahedron::Tetrahedron;
 use super::vector::Vector;
-use super::view_space::{EYE_Y, EYE_Z, PIXEL, coordinate, eye_direction, from_middle, reflect};
+use super::view_space::{
+    EYE_Y, EYE_Z, PIXEL, coordinate, eye_direction, from_middle, reflect, reflect_direction,
+};
 use crate::number::Real;
 use crate::scene::Scene;
 
@@ -125,11 +127,7 @@ impl<R: Real> ViewTransform<R> {
         let direction = scene.light().scaled_direction();
         let turned = -self.turn(direction);
         Direction {
-            vector: if mirrored {
-                Vector::new(turned.x, -turned.y, turned.z)
-            } else {
-                turned
-            },
+            vector: reflect_direction(turned, mirrored),
             // Turning does not change a length, but would round it.
             squared_length: Vector::exact(direction).squared_length(),
         }
