@@ -37,7 +37,7 @@
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
 //!   bounds on its errors for the certified kernel and without for the others (`policy`). The
 //!   columns of a sphere that face the light, and those that may have a highlight, are found first
-//!   (`columns`).
+//!   (`columns`), except where there are so few that each finds out by itself.
 //! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
 //!   (`history`).
 //!

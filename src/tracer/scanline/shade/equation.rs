@@ -7,7 +7,8 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
 use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, Samples};
-use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight};
+use crate::tracer::scanline::shade::run::Outlook;
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight, ZONES};
 
 // No closures below: see `shade/run.rs`.
 
@@ -52,14 +53,50 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         P::product_plus(hits.s, s, P::product_plus(hits.q, q, of_row))
     }
 
-    /// The hits from X = `x` on: s = √(R² − m² − q²).
+    /// q and s² = R² − m² − q² of the pixels from X = `x` on.
+    #[inline(always)]
+    fn squares(&self, x: f64) -> [LaneVector<S, P>; 2] {
+        let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
+        [q, P::product_plus(q, -q, self.squared)]
+    }
+
+    /// The hits from X = `x` on.
     #[inline(always)]
     pub(crate) fn hits(&self, x: f64) -> Hits<LaneVector<S, P>> {
-        let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
-        let squared = P::product_plus(q, -q, self.squared);
+        let [q, squared] = self.squares(x);
         Hits {
             q,
             s: squared.max(P::Lane::of(0.0)).sqrt(),
+        }
+    }
+
+    /// What the pixels of a run tell of themselves: those whose bits are set in `pixels`, from X =
+    /// `x` on, in two vectors if one does not hold all, from `next` on.
+    #[inline(always)]
+    pub(crate) fn outlook(&self, [x, next]: [f64; 2], pixels: u64) -> Outlook {
+        let lanes = LaneVector::<S, P>::LEN;
+        let (mut inside, mut bright) = ([0; ZONES], 0);
+        for (half, x) in [x, next].into_iter().enumerate() {
+            if half * lanes < S::f32s::LEN && pixels >> (half * lanes) != 0 {
+                let [_, squared] = self.squares(x);
+                for (zone, inside) in inside.iter_mut().enumerate() {
+                    let is_inside = squared.simd_ge(P::Lane::of(self.sphere.min_squares[zone]));
+                    *inside |= is_inside.to_bitmask() << (half * lanes);
+                }
+                if let Some(highlight) = &self.sphere.highlight {
+                    let halfway = self.value(&highlight.form, &self.hits(x));
+                    let is_bright = halfway.simd_gt(P::Lane::of(self.sphere.threshold));
+                    bright |= is_bright.to_bitmask() << (half * lanes);
+                }
+            }
+        }
+        let [innermost, inner, outermost] = inside;
+        let shadeable = pixels & outermost;
+        let is_out = |inside: u64| usize::from(shadeable & !inside != 0);
+        Outlook {
+            zone: is_out(innermost) + is_out(inner),
+            bright: bright & shadeable,
+            beyond: pixels & !outermost,
         }
     }
 

@@ -12,7 +12,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::lane::Lane;
 
 /// The arithmetic that a kernel shades spheres with.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::tracer) enum Precision {
     /// f32.
     Single,

@@ -23,16 +23,33 @@ pub(crate) struct RunScratch {
     pub(crate) doubts: Vec<u32>,
 }
 
-/// The pixels of a run, all of them shadeable: where they are, and where their samples go.
+/// The columns in each zone of a sphere but the outermost, and those that may have a highlight.
+#[derive(Clone, Copy)]
+pub(crate) struct RunColumns {
+    pub(crate) zones: [Columns; ZONES - 1],
+    pub(crate) bright: Columns,
+}
+
+/// What is known of some pixels before they are shaded.
+pub(crate) struct Outlook {
+    /// The outermost zone that any of them is in.
+    pub(crate) zone: usize,
+    /// A bit for each: whether it may have a highlight.
+    pub(crate) bright: u64,
+    /// A bit for each: whether it lies beyond all zones.
+    pub(crate) beyond: u64,
+}
+
+/// The pixels of a run: where they are, and where their samples go.
 pub(crate) struct Run<'r> {
     pub(crate) grid: Grid,
     /// Y.
     pub(crate) y: f64,
     /// The first column.
     pub(crate) from: u32,
-    /// The columns in each zone but the outermost, and those that may have a highlight.
-    pub(crate) zones: [Columns; ZONES - 1],
-    pub(crate) bright: Columns,
+    /// Where the sphere's zones and highlight lie in the row; `None` where each pixel finds out by
+    /// itself, which only the certified shader can.
+    pub(crate) columns: Option<RunColumns>,
     /// Whether all pixels face the light, or the stage has no shadows.
     pub(crate) is_facing: bool,
     pub(crate) samples: &'r mut [f32],
@@ -53,12 +70,27 @@ impl Run<'_> {
         [x, x + PIXEL * on as f64]
     }
 
-    /// A bit for each of `count` pixels: whether it may have a highlight.
+    /// What is known of the first `here` of `width` pixels from pixel `first` on.
     #[inline(always)]
-    fn bright(&self, first: usize, count: usize) -> u64 {
+    fn outlook<S: Simd, P: Policy<S>>(
+        &self,
+        row: &RowShader<'_, S, P>,
+        first: usize,
+        here: usize,
+    ) -> Outlook {
         let begin = self.from + first as u32;
-        let (end, (from, to)) = (begin + count as u32, self.bright);
-        (1 << (to.clamp(begin, end) - begin)) - (1 << (from.clamp(begin, end) - begin))
+        let Some(RunColumns { zones, bright }) = self.columns else {
+            let lanes = LaneVector::<S, P>::LEN;
+            return row.outlook(self.x(first, lanes), u64::MAX >> (64 - here));
+        };
+        let is_out = |(from, to): Columns| begin < from || begin + here as u32 > to;
+        let [innermost, inner] = zones;
+        let (end, (from, to)) = (begin + S::f32s::LEN as u32, bright);
+        Outlook {
+            zone: usize::from(is_out(innermost)) + usize::from(is_out(inner)),
+            bright: (1 << (to.clamp(begin, end) - begin)) - (1 << (from.clamp(begin, end) - begin)),
+            beyond: 0,
+        }
     }
 
     /// Writes the pixels whose bit is set in `in_shadow`.
@@ -121,14 +153,17 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
                 in_doubt |= doubts << (half * lanes);
             }
         }
-        let bright = run.bright(first, width);
+        let Outlook {
+            zone,
+            bright,
+            beyond,
+        } = run.outlook(&row, first, here);
+        in_shadow &= !beyond;
+        in_doubt |= beyond;
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
             fill(simd, samples, run.in_shadow);
         } else {
-            let is_out = |(from, to): Columns| column < from || column + here as u32 > to;
-            let [innermost, inner] = run.zones;
-            let zone = usize::from(is_out(innermost)) + usize::from(is_out(inner));
             let ambient = row.ambient(zone);
             let lit_low = row.lit(x[0], now[0], &ambient, (zone, bright));
             let mut lit_high = lit_low;

@@ -7,7 +7,7 @@ use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of};
 use crate::tracer::scanline::shade::policy::{Certified, Precision};
-use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
+use crate::tracer::scanline::shade::run::{Run, RunColumns, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::write::paint::Paint;
 use crate::tracer::scanline::write::row_writer::RowWriter;
@@ -34,15 +34,21 @@ impl SpanShader {
         in_shadow: &'r Paint,
         pixels: &impl Pixels,
     ) {
+        // Its columns would take longer than its pixels.
+        if shaded.constants.is_small && writer.precision == Precision::Certified {
+            self.shade_run(writer, columns, shaded, None, in_shadow);
+            writer.decide(self.scratch.doubts.drain(..), pixels);
+            return;
+        }
         let sphere = self.cache.of(shaded, writer.row, writer.level, writer.grid);
         let shadeable = both(columns, sphere.shadeable);
         self.scratch.doubts.extend(columns.0..shadeable.0);
         self.scratch.doubts.extend(shadeable.1..columns.1);
         match sphere.facing {
             _ if !shaded.constants.has_shadows => {
-                self.shade_run(writer, shadeable, shaded, (&sphere, true), in_shadow);
+                self.shade_run(writer, shadeable, shaded, Some((&sphere, true)), in_shadow);
             }
-            None => self.shade_run(writer, shadeable, shaded, (&sphere, false), in_shadow),
+            None => self.shade_run(writer, shadeable, shaded, Some((&sphere, false)), in_shadow),
             Some((inside, inside_faces)) => {
                 let inside = both(shadeable, inside);
                 let parts = [
@@ -53,7 +59,13 @@ impl SpanShader {
                 for (columns, faces) in parts {
                     match faces {
                         _ if columns.0 == columns.1 => {}
-                        true => self.shade_run(writer, columns, shaded, (&sphere, true), in_shadow),
+                        true => self.shade_run(
+                            writer,
+                            columns,
+                            shaded,
+                            Some((&sphere, true)),
+                            in_shadow,
+                        ),
                         false => writer.fill(columns, in_shadow),
                     }
                 }
@@ -64,13 +76,14 @@ impl SpanShader {
         }
     }
 
-    /// Shades columns that are all shadeable.
+    /// Shades columns. If they are `known`, they are all shadeable, and the bool tells whether they
+    /// face the light.
     fn shade_run(
         &mut self,
         writer: &mut RowWriter<'_>,
         columns: Columns,
         shaded: &ShadedSphere<'_>,
-        (sphere, is_facing): (&SphereColumns, bool),
+        known: Option<(&SphereColumns, bool)>,
         in_shadow: &Paint,
     ) {
         if columns.0 == columns.1 {
@@ -79,24 +92,30 @@ impl SpanShader {
         writer.mark_written();
         let casters_near = &mut self.scratch.casters;
         casters_near.clear();
-        if sphere.casters != 0 {
-            let x = |column| writer.grid.coordinate(column);
-            let ends = (x(columns.0), x(columns.1 - 1));
-            let hits = shaded.constants.hit_box(ends, (writer.y, writer.y));
-            let casters = shaded.casters.iter().enumerate();
-            let near = casters.filter(|(number, caster)| {
-                sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)
-            });
-            casters_near.extend(near.map(|(number, _)| number));
+        match known {
+            None => casters_near.extend(0..shaded.casters.len()),
+            Some((sphere, _)) if sphere.casters != 0 => {
+                let x = |column| writer.grid.coordinate(column);
+                let ends = (x(columns.0), x(columns.1 - 1));
+                let hits = shaded.constants.hit_box(ends, (writer.y, writer.y));
+                let casters = shaded.casters.iter().enumerate();
+                let near = casters.filter(|(number, caster)| {
+                    sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)
+                });
+                casters_near.extend(near.map(|(number, _)| number));
+            }
+            Some(_) => {}
         }
         let range = writer.pixels(columns);
         let mut run = Run {
             grid: writer.grid,
             y: writer.y,
             from: columns.0,
-            zones: sphere.zones,
-            bright: sphere.bright,
-            is_facing,
+            columns: known.map(|(sphere, _)| RunColumns {
+                zones: sphere.zones,
+                bright: sphere.bright,
+            }),
+            is_facing: known.map_or(!shaded.constants.has_shadows, |(_, is_facing)| is_facing),
             samples: &mut writer.samples[3 * range.start..3 * range.end],
             decisions: writer.decisions.as_mut().map(|all| &mut all[range]),
             in_shadow,

@@ -27,6 +27,9 @@ pub(crate) const ZONES: usize = 3;
 /// R over the smallest s of each zone.
 const ZONE_DIVISORS: [f64; ZONES] = [8.0, 128.0, 16384.0];
 
+/// The radius below which a sphere is small, in thirds of a pixel.
+const SMALL: f64 = 30.0;
+
 /// A linear form in the coordinates of a normal: constant + a_q q + a_m m + a_s s.
 #[derive(Clone, Copy)]
 pub(crate) struct LinearForm {
@@ -231,6 +234,8 @@ pub(crate) struct SphereConstants {
     pub(crate) color: Coefficients,
     /// In each zone, a bound on the error of any channel without that of the highlight.
     pub(crate) errors: [f64; ZONES],
+    /// Whether its pixels are so few that each finds out its zone, its side and its highlight.
+    pub(crate) is_small: bool,
     /// Whether there are shadows in this stage; without, a point turned away from the light has its
     /// ambient and specular light.
     pub(crate) has_shadows: bool,
@@ -335,6 +340,7 @@ impl SphereConstants {
                 specular: cycle(2),
             },
             errors,
+            is_small: radius < SMALL,
             has_shadows,
         }
     }

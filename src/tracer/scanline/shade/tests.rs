@@ -8,7 +8,7 @@ use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::run::{Run, RunScratch, shade};
+use crate::tracer::scanline::shade::run::{Run, RunColumns, RunScratch, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::tests::{each_frame, lit};
 
@@ -23,11 +23,13 @@ struct Counts {
     missing: usize,
 }
 
-/// Shades all of a sphere, hidden or not: each row with all casters, and with those that may cast a
-/// shadow on the row's box. Certain samples are compared with those of pixels that show the sphere.
+/// Shades all of a sphere, hidden or not, by its columns or pixel by pixel: each row with all
+/// casters, and with those that may cast a shadow on the row's box. Certain samples are compared
+/// with those of pixels that show the sphere.
 fn check(
     tracer: &RowTracer<'_, Ladder<'_>>,
     shaded: &ShadedSphere<'_>,
+    by_columns: bool,
     (level, name): (Level, &str),
     counts: &mut Counts,
 ) {
@@ -37,9 +39,13 @@ fn check(
     let rows = (0..SIZE).flat_map(|row| [(row, false), (row, true)]);
     for (row, only_near) in rows {
         let columns = cache.of(shaded, row, level, frame.grid);
-        let (from, to) = columns.shadeable;
+        let (mut from, mut to) = columns.shadeable;
         if from == to {
             continue;
+        }
+        if !by_columns {
+            // Pixels beyond the zones, and beyond the sphere, are in doubt.
+            (from, to) = (from.saturating_sub(1), (to + 1).min(SIZE));
         }
         let count = (to - from) as usize;
         let mut samples = vec![0.0; 3 * count];
@@ -56,8 +62,10 @@ fn check(
             grid: frame.grid,
             y,
             from,
-            zones: columns.zones,
-            bright: columns.bright,
+            columns: by_columns.then_some(RunColumns {
+                zones: columns.zones,
+                bright: columns.bright,
+            }),
             is_facing: !shaded.constants.has_shadows,
             samples: &mut samples,
             decisions: Some(&mut decisions),
@@ -87,7 +95,7 @@ fn check(
 #[test]
 fn what_is_certain_is_what_pixels_are_defined_to_show() {
     for level in [Level::baseline(), Level::new()] {
-        let mut counts = Counts::default();
+        let mut counts = <[Counts; 2]>::default();
         each_frame(SIZE, |name, tracer| {
             for mirrored in [false, true] {
                 let solids = tracer.frame.solids(mirrored);
@@ -96,21 +104,26 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
                 }
                 for solid in solids.solids {
                     if let Appearance::Sphere(shaded) = &solid.appearance {
-                        check(tracer, shaded, (level, name), &mut counts);
+                        for by_columns in [true, false] {
+                            let counts = &mut counts[usize::from(by_columns)];
+                            check(tracer, shaded, by_columns, (level, name), counts);
+                        }
                     }
                 }
             }
         });
         // A shader that is certain of nothing would pass, too.
-        let Counts {
+        for Counts {
             certain,
             in_doubt,
             missing,
-        } = counts;
-        assert!(
-            certain > 1000 && in_doubt < certain / 50,
-            "{certain}, {in_doubt}"
-        );
-        assert!(missing > 1000, "{missing}");
+        } in counts
+        {
+            assert!(
+                certain > 1000 && in_doubt < certain / 50,
+                "{certain}, {in_doubt}"
+            );
+            assert!(missing > 1000, "{missing}");
+        }
     }
 }
