@@ -11,7 +11,7 @@
 //!
 //! ```text
 //!     frame → edge table → edges of a band → active edges → what gaps show → spans → samples
-//!     prepare/  edges/table    edges/region     active       visibility/   active   shade/, write/
+//!     prepare/  edges/table    edges/region    active, low   visibility/   active   shade/, write/
 //!
 //!     one row:
 //!             edge      edge         edge       edge      edge           edge
@@ -32,6 +32,8 @@
 //!   region: `shade/` computes it.
 //! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
 //!   mostly nothing but the columns of the edges has changed.
+//! - `low.rs` lays the regions of few rows over those gaps: a crowd of them would leave nothing in
+//!   order from one row to the next.
 //! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
 //!   by a separating plane (`separation`) or by a depth test (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
@@ -71,6 +73,7 @@
 mod active;
 mod edges;
 mod grid;
+mod low;
 mod prepare;
 mod shade;
 #[cfg(test)]
@@ -91,6 +94,7 @@ use super::tally::Tally;
 use active::ActiveEdges;
 use grid::Columns;
 pub(super) use grid::ROWS;
+use low::LowEdges;
 use prepare::frame::PreparedFrame;
 use prepare::solids::Appearance;
 pub(super) use shade::policy::Precision;
@@ -119,6 +123,7 @@ pub(super) struct RowTracer<'f, P> {
 #[derive(Default)]
 pub(super) struct Scratch {
     active: ActiveEdges,
+    low: LowEdges,
     depth_tests: DepthTests,
     depth_tester: DepthTester,
     shader: SpanShader,
@@ -152,6 +157,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch
             .active
             .begin(&self.frame.edge_table, self.frame.grid);
+        scratch.low.begin(&self.frame.edge_table);
         scratch.depth_tests.clear();
         scratch.shader.begin(self.frame.shaded_spheres);
     }
@@ -219,6 +225,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let frame = &self.frame;
         let Scratch {
             active,
+            low,
             depth_tests,
             depth_tester,
             shader,
@@ -236,27 +243,78 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             resolve,
         );
         writer.tally.edges += active.edge_count() as u64;
+        if low.enter(writer.row, &frame.edge_table, self.level, frame.grid) {
+            return self.trace_overlaid(writer, scratch);
+        }
         writer.tally.spans += active.len() as u64;
         let mut from = 0;
         for span in 0..active.len() {
             let (to, visible) = active.span(span, writer.row);
-            match visible {
-                // The span has no columns in this row, but may have some in the next.
-                _ if from == to => {}
-                Visible::Only(shows) => self.write(writer, (from, to), shows, shader),
-                Visible::DepthTest(_) => {
-                    let columns = (from, to);
-                    let parts = depth_tester.test(frame, depth_tests, visible, writer.y, columns);
-                    for (columns, shows) in parts {
-                        self.write(writer, columns, shows, shader);
-                    }
-                }
-            }
+            self.show(
+                writer,
+                (from, to),
+                visible,
+                (depth_tester, depth_tests, shader),
+            );
             from = to;
         }
     }
 
+    /// Traces a row that low regions reach.
+    #[inline(never)]
+    fn trace_overlaid<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
+        let frame = &self.frame;
+        let Scratch {
+            active,
+            low,
+            depth_tests,
+            depth_tester,
+            shader,
+        } = scratch;
+        let tests = depth_tests.count();
+        let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
+        low.overlay(writer.row, &frame.edge_table, active, resolve);
+        writer.tally.edges += low.edge_count(writer.row) as u64;
+        writer.tally.spans += low.spans().len() as u64;
+        let mut from = 0;
+        for &(to, visible) in low.spans() {
+            let visible = visible.visible();
+            self.show(
+                writer,
+                (from, to),
+                visible,
+                (depth_tester, depth_tests, shader),
+            );
+            from = to;
+        }
+        // No other row can use the tests of gaps with low regions.
+        depth_tests.truncate(tests);
+    }
+
+    /// Writes the columns of a span.
+    #[inline(always)]
+    fn show<'r>(
+        &'r self,
+        writer: &mut RowWriter<'r>,
+        columns: Columns,
+        visible: Visible,
+        (depth_tester, depth_tests, shader): (&mut DepthTester, &DepthTests, &mut SpanShader),
+    ) {
+        match visible {
+            // The span has no columns in this row, but may have some in the next.
+            _ if columns.0 == columns.1 => {}
+            Visible::Only(shows) => self.write(writer, columns, shows, shader),
+            Visible::DepthTest(_) => {
+                let parts = depth_tester.test(&self.frame, depth_tests, visible, writer.y, columns);
+                for (columns, shows) in parts {
+                    self.write(writer, columns, shows, shader);
+                }
+            }
+        }
+    }
+
     /// Writes columns that all show the same.
+    #[inline(always)]
     fn write<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,

@@ -29,26 +29,27 @@ enum BandEdges {
 /// An edge of a region, 4 · region + kind: the region begins possibly (0), begins certainly (1),
 /// ends certainly (2), ends possibly (3).
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Edge(u32);
+pub(crate) struct Edge(u32);
 
 impl Edge {
-    /// The edges of a region, from the left.
-    fn of(region: usize, band: BandEdges) -> impl Iterator<Item = Edge> {
-        let kinds: &[u32] = match band {
-            BandEdges::None => &[],
-            BandEdges::Two => &[1, 3],
-            BandEdges::Four => &[0, 1, 2, 3],
-        };
+    /// The edges of a region whose possible columns are all certain, or not, from the left.
+    pub(crate) fn of(region: usize, is_certain: bool) -> impl Iterator<Item = Edge> {
+        let kinds: &[u32] = if is_certain { &[1, 3] } else { &[0, 1, 2, 3] };
         kinds.iter().map(move |kind| Edge(4 * region as u32 + kind))
     }
 
-    fn region(self) -> usize {
+    pub(crate) fn region(self) -> usize {
         self.0 as usize / 4
     }
 
+    /// Which of the region's four edges it is.
+    pub(crate) fn kind(self) -> usize {
+        self.0 as usize % 4
+    }
+
     /// How the region covers the columns to the right of the edge.
-    fn cover(self) -> Cover {
-        match self.0 % 4 {
+    pub(crate) fn cover(self) -> Cover {
+        match self.kind() {
             0 | 2 => Cover::Possibly,
             1 => Cover::Certainly,
             _ => Cover::Not,
@@ -56,8 +57,8 @@ impl Edge {
     }
 
     /// 1 where columns begin, −1 where they end.
-    fn step(self) -> i32 {
-        if self.0 % 4 < 2 { 1 } else { -1 }
+    pub(crate) fn step(self) -> i32 {
+        if self.kind() < 2 { 1 } else { -1 }
     }
 }
 
@@ -191,6 +192,14 @@ impl ActiveEdges {
         let Span { to, visible } = self.spans[number + 1];
         let to = self.sorted_columns[to as usize][row as usize % ROWS];
         (to, visible.visible())
+    }
+
+    /// The gaps of the row, from the left: the column at which each ends, what it shows if it has
+    /// columns, and the edge at its end.
+    pub(crate) fn gaps(&self, row: u32) -> impl Iterator<Item = (u32, Packed, Option<Edge>)> {
+        let edges = self.edges.iter().copied().map(Some).chain([None]);
+        let ends = self.sorted_columns.iter().zip(&self.gaps).zip(edges);
+        ends.map(move |((columns, visible), edge)| (columns[row as usize % ROWS], *visible, edge))
     }
 
     /// Sorts the edges by their columns in a row. Returns how often two were exchanged.
@@ -358,8 +367,11 @@ impl ActiveEdges {
         self.arrivals.clear();
         for region in self.changed.drain(..) {
             self.is_changed[region] = true;
-            for edge in Edge::of(region, self.band_edges[region]) {
-                self.arrivals.push((self.columns[edge.0 as usize][0], edge));
+            let band_edges = self.band_edges[region];
+            if band_edges != BandEdges::None {
+                for edge in Edge::of(region, band_edges == BandEdges::Two) {
+                    self.arrivals.push((self.columns[edge.0 as usize][0], edge));
+                }
             }
         }
         self.arrivals.sort_unstable();

@@ -6,6 +6,7 @@
 use fearless_simd::Level;
 
 use super::prepare::solids::Appearance;
+use super::visibility::coverage::Coverage;
 use super::visibility::visible::{DepthTests, Shown, Visible};
 use super::{DepthTester, Precision, RowTracer, Scratch, visible};
 use crate::scene::Scene;
@@ -87,27 +88,20 @@ fn spans<P: RowPixels>(
 ) -> Vec<(u32, Visible)> {
     let Scratch {
         active,
+        low,
         depth_tests,
         ..
     } = scratch;
-    let frame = &tracer.frame;
-    active.enter(
-        row,
-        &frame.edge_table,
-        tracer.level,
-        frame.grid,
-        |coverage| visible(frame, coverage, depth_tests),
-    );
-    let mut spans: Vec<(u32, Visible)> = Vec::new();
-    let mut from = 0;
-    for number in 0..active.len() {
-        let (to, visible) = active.span(number, row);
-        if to > from {
-            spans.push((to, visible));
-            from = to;
-        }
-    }
+    let (frame, level) = (&tracer.frame, tracer.level);
+    let (table, grid) = (&frame.edge_table, frame.grid);
+    let mut resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
+    active.enter(row, table, level, grid, &mut resolve);
+    low.enter(row, table, level, grid);
+    low.overlay(row, table, active, resolve);
+    let spans = low.spans().iter();
     spans
+        .map(|(to, visible)| (*to, visible.visible()))
+        .collect()
 }
 
 /// What is visible, in words that do not depend on the numbers of depth tests.

@@ -7,7 +7,7 @@ use fearless_simd::{Simd, u32x8};
 
 use crate::tracer::arena::collect;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::grid::ROWS;
+use crate::tracer::scanline::grid::{Grid, ROWS};
 
 /// What the pixels of a region have in common.
 #[derive(Clone, Copy)]
@@ -49,8 +49,21 @@ pub(crate) struct EdgeTable<'f> {
     /// How many receivers of shadows there are.
     pub(crate) receivers: usize,
     /// For 64 regions at a time, the half-open range of the rows of each: where it begins, and
-    /// where it ends. Missing regions have no rows.
+    /// where it ends. Missing regions and low ones have no rows.
     rows: &'f [[[u32; 64]; 2]],
+    /// The numbers of low regions, band by band; a region in two bands is in both.
+    low: &'f [u32],
+    /// Where each band begins in `low`, and where the last ends.
+    low_bands: &'f [u32],
+}
+
+/// The most rows of a low region.
+const MAX_LOW: u32 = 16;
+
+/// Whether a region with these rows is low: it leaves the active edges as soon as it has entered
+/// them.
+fn is_low((from, to): (u32, u32)) -> bool {
+    to <= from + MAX_LOW
 }
 
 impl EdgeTable<'_> {
@@ -59,8 +72,14 @@ impl EdgeTable<'_> {
         self.rows.len()
     }
 
-    /// A bit for each of 64 regions: whether it may have pixels in the band of rows from `first`
-    /// on.
+    /// The low regions that may have pixels in the band of rows from `first` on.
+    pub(crate) fn low(&self, first: u32) -> &[u32] {
+        let band = first as usize / ROWS;
+        &self.low[self.low_bands[band] as usize..self.low_bands[band + 1] as usize]
+    }
+
+    /// A bit for each of 64 regions: whether it is not low and may have pixels in the band of rows
+    /// from `first` on.
     #[inline(always)]
     pub(crate) fn reaching<S: Simd>(&self, simd: S, word: usize, first: u32) -> u64 {
         let [from, to] = &self.rows[word];
@@ -107,16 +126,45 @@ impl<'f> EdgeTableBuilder<'f> {
         receiver
     }
 
-    pub(crate) fn build(self) -> EdgeTable<'f> {
+    pub(crate) fn build(self, grid: Grid) -> EdgeTable<'f> {
+        let bands_of = |region: &Region<'_>| {
+            let (from, to) = region.rows();
+            if from < to && is_low((from, to)) {
+                from as usize / ROWS..(to as usize).div_ceil(ROWS)
+            } else {
+                0..0
+            }
+        };
+        let bands = (grid.size as usize).div_ceil(ROWS);
+        let low_bands = self.arena.alloc_slice_fill_copy(bands + 1, 0);
+        for band in self.regions.iter().flat_map(bands_of) {
+            low_bands[band] += 1;
+        }
+        let mut end = 0;
+        for band in &mut *low_bands {
+            end += *band;
+            *band = end;
+        }
+        let low = self.arena.alloc_slice_fill_copy(end as usize, 0);
+        for (number, region) in self.regions.iter().enumerate().rev() {
+            for band in bands_of(region) {
+                low_bands[band] -= 1;
+                low[low_bands[band] as usize] = number as u32;
+            }
+        }
         let rows = self.regions.chunks(64).map(|regions| {
             let mut rows = [[0; 64]; 2];
             for (bit, region) in regions.iter().enumerate() {
-                (rows[0][bit], rows[1][bit]) = region.rows();
+                if !is_low(region.rows()) {
+                    (rows[0][bit], rows[1][bit]) = region.rows();
+                }
             }
             rows
         });
         EdgeTable {
             rows: collect(self.arena, rows),
+            low,
+            low_bands,
             receivers: self.receivers as usize,
             regions: self.regions.into_bump_slice(),
             kinds: self.kinds.into_bump_slice(),

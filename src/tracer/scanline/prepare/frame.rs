@@ -66,7 +66,7 @@ impl<'f> PreparedFrame<'f> {
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         PreparedFrame {
             grid,
-            edge_table: parts.edge_table.build(),
+            edge_table: parts.edge_table.build(grid),
             paints: parts.paints.all(),
             background,
             surface,

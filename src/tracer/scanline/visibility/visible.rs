@@ -109,6 +109,18 @@ impl DepthTests {
         self.candidates.clear();
     }
 
+    /// The number of tests.
+    pub(crate) fn count(&self) -> usize {
+        self.tests.len()
+    }
+
+    /// Forgets all but the first `count` tests.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.tests.truncate(count);
+        let end = self.tests.last().map_or(0, |test| test.candidates.end);
+        self.candidates.truncate(end);
+    }
+
     /// Whether all tests should be forgotten: most of so many are not needed any more.
     pub(crate) fn is_full(&self) -> bool {
         self.tests.len() > MANY
