@@ -295,24 +295,22 @@ impl SphereConstants {
             .map(|s_error| bounds.error(&to_light, s_error));
         let mut errors = [0.0_f64; ZONES];
         let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
-            let parts = coefficients.map(|coefficient| coefficient * color);
-            let [a, d, s] = parts;
-            let magnitudes: f64 = parts.iter().map(|part| part.value().abs()).sum();
-            let error = |light: f64| {
-                let specular = if s.is_zero() {
-                    0.0
-                } else {
-                    1.1 * s.error() + s.value().abs() * left_out
-                };
-                // |n·l| ≤ 1, but for its error; two products and two sums round.
-                let diffuse = d.error() * (1.0 + light) + d.value().abs() * light;
-                (a.error() + diffuse + specular + 8.0 * U * magnitudes) * INFLATION
-            };
+            let [a, d, s] = coefficients.map(|coefficient| coefficient.value() * color.value());
+            let magnitudes = a.abs() + d.abs() + s.abs();
+            let sum = |of: fn(Bounded) -> f64| coefficients.map(of).iter().sum::<f64>();
+            // AB − ab = α B + a β + …, for all three products together.
+            let carried = sum(|x| x.value().abs()) * color.error()
+                + sum(Bounded::error) * (color.value().abs() + color.error());
+            let specular = if s == 0.0 { 0.0 } else { s.abs() * left_out };
             for (all, light) in errors.iter_mut().zip(light_errors) {
-                *all = error(light).max(*all);
+                // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three
+                // products round, and then two products and two sums.
+                let error =
+                    (1.1 + light) * carried + d.abs() * light + specular + 10.0 * U * magnitudes;
+                *all = (error * INFLATION).max(*all);
             }
             // −0 becomes +0, so that no sample is −0.
-            parts.map(|part| part.value() + 0.0)
+            [a + 0.0, d + 0.0, s + 0.0]
         };
         let [red, green, blue] = lighting.coefficients;
         let channels = [
