@@ -41,6 +41,31 @@ impl<'f> SliceAllocator<'f> for Member<'f> {
     }
 }
 
+/// The items of each of `count` buckets, in the order in which `items` has them; then where each
+/// bucket begins among them, and where the last ends.
+pub(super) fn bucketed<T: Copy + Default>(
+    arena: &Bump,
+    count: usize,
+    items: impl DoubleEndedIterator<Item = (usize, T)> + Clone,
+) -> (&[T], &[u32]) {
+    let starts = arena.alloc_slice_fill_copy(count + 1, 0);
+    for (bucket, _) in items.clone() {
+        starts[bucket] += 1;
+    }
+    let mut end = 0;
+    for start in &mut *starts {
+        end += *start;
+        *start = end;
+    }
+    let all = arena.alloc_slice_fill_copy(end as usize, T::default());
+    // Each bucket is filled from its end.
+    for (bucket, item) in items.rev() {
+        starts[bucket] -= 1;
+        all[starts[bucket] as usize] = item;
+    }
+    (all, starts)
+}
+
 /// A slice of all items, however many there are.
 pub(super) fn collect<T>(arena: &Bump, items: impl IntoIterator<Item = T>) -> &[T] {
     let mut all = Vec::new_in(arena);

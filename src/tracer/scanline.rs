@@ -325,9 +325,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         match shows {
             Shown::Paint(paint) => writer.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
-                if let Appearance::Sphere(shaded) =
-                    &self.frame.solids(mirrored).solid(solid).appearance
-                {
+                if let Appearance::Sphere(shaded) = self.frame.solids(mirrored).appearance(solid) {
                     let in_shadow = &self.frame.paints[shaded.in_shadow];
                     shader.shade(writer, columns, shaded, in_shadow, self.pixels);
                 }

@@ -206,8 +206,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                                 Shown::Sphere { mirrored, solid },
                                 Decision::Solid(_) | Decision::Mirrored(_),
                             ) => {
-                                let appearance =
-                                    &tracer.frame.solids(mirrored).solid(solid).appearance;
+                                let appearance = tracer.frame.solids(mirrored).appearance(solid);
                                 matches!(appearance, Appearance::Sphere(sphere) if sphere.lit == lit(decision))
                             }
                             (Shown::Sphere { .. }, _) => false,

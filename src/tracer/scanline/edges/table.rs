@@ -5,7 +5,7 @@ use bumpalo::collections::Vec as Growing;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x8};
 
-use crate::tracer::arena::collect;
+use crate::tracer::arena::{bucketed, collect};
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 
@@ -127,31 +127,17 @@ impl<'f> EdgeTableBuilder<'f> {
     }
 
     pub(crate) fn build(self, grid: Grid) -> EdgeTable<'f> {
-        let bands_of = |region: &Region<'_>| {
-            let (from, to) = region.rows();
-            if from < to && is_low((from, to)) {
-                from as usize / ROWS..(to as usize).div_ceil(ROWS)
-            } else {
-                0..0
-            }
-        };
+        let regions = self.regions.iter().enumerate();
+        let low = regions.filter_map(|(number, region)| {
+            let rows = region.rows();
+            (rows.0 < rows.1 && is_low(rows)).then_some((number as u32, rows))
+        });
+        let low = low.flat_map(|(number, (from, to))| {
+            let bands = from as usize / ROWS..(to as usize).div_ceil(ROWS);
+            bands.map(move |band| (band, number))
+        });
         let bands = (grid.size as usize).div_ceil(ROWS);
-        let low_bands = self.arena.alloc_slice_fill_copy(bands + 1, 0);
-        for band in self.regions.iter().flat_map(bands_of) {
-            low_bands[band] += 1;
-        }
-        let mut end = 0;
-        for band in &mut *low_bands {
-            end += *band;
-            *band = end;
-        }
-        let low = self.arena.alloc_slice_fill_copy(end as usize, 0);
-        for (number, region) in self.regions.iter().enumerate().rev() {
-            for band in bands_of(region) {
-                low_bands[band] -= 1;
-                low[low_bands[band] as usize] = number as u32;
-            }
-        }
+        let (low, low_bands) = bucketed(self.arena, bands, low);
         let rows = self.regions.chunks(64).map(|regions| {
             let mut rows = [[0; 64]; 2];
             for (bit, region) in regions.iter().enumerate() {

@@ -19,9 +19,7 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
 use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
-use crate::tracer::scanline::prepare::solids::{
-    Appearance, FrontFace, Pair, PreparedSolid, PreparedSolids,
-};
+use crate::tracer::scanline::prepare::solids::{Appearance, FrontFace, Pair, PreparedSolids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::SphereConstants;
@@ -40,7 +38,9 @@ pub(crate) fn prepare_solids<'f>(
     let (arena, mirrored) = (parts.arena, outlines.mirrored);
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let appearances = Appearances::new(picture, view, mirrored);
-    let mut solids = Growing::with_capacity_in(numbers.len(), arena);
+    let sides = collect(arena, outlines.all.iter().map(|solid| solid.side));
+    let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
+    let mut depths = Growing::with_capacity_in(numbers.len(), arena);
     for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
         let appearance = appearances.of(&solid, parts);
         let kind = if mirrored {
@@ -49,15 +49,14 @@ pub(crate) fn prepare_solids<'f>(
             RegionKind::Direct(index)
         };
         parts.edge_table.add(solid.outline, kind);
-        solids.push(PreparedSolid {
-            side: solid.side,
-            depth: solid.depth,
-            appearance,
-        });
+        all_appearances.push(appearance);
+        depths.push(solid.depth);
     }
     PreparedSolids {
         mirrored,
-        solids: solids.into_bump_slice(),
+        sides,
+        appearance: all_appearances.into_bump_slice(),
+        depths: depths.into_bump_slice(),
         separation: Separation::new(view, numbers, arena),
     }
 }

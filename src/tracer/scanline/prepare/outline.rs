@@ -5,14 +5,14 @@ use bumpalo::Bump;
 use crate::number::Bounded;
 use crate::scene::{Side, Solid};
 use crate::stage::Stage;
-use crate::tracer::arena::collect;
+use crate::tracer::arena::{bucketed, collect};
 use crate::tracer::extent::Extent;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
 use crate::tracer::view::{SolidKinds, View};
@@ -50,10 +50,24 @@ impl<'f> Outlines<'f> {
         let kinds = SolidKinds::of(stage);
         let mut outlines = Outlines {
             mirrored,
-            all: bumpalo::collections::Vec::new_in(arena),
+            all: bumpalo::collections::Vec::with_capacity_in(view.solid_count(), arena),
             area: 0,
         };
-        for number in 0..view.solid_count() {
+        // What a band of rows shows of spheres lies side by side in memory if they are prepared in the
+        // order of bands. Of solids with one support, the first in the scene stays first: spheres
+        // with one support have the same rows.
+        let bands = (grid.size as usize).div_ceil(ROWS);
+        let count = view.solid_count();
+        let numbers = (0..count).filter(|number| kinds.hold(&view.solid(*number)));
+        let numbers = numbers.map(|number| match view.solid(number) {
+            Solid::Sphere(_) => {
+                let (first, _) = view.extents.of(number).rows(grid.size);
+                (first as usize / ROWS, number)
+            }
+            Solid::Tetrahedron(_) => (bands + 1, number),
+        });
+        let (numbers, _) = bucketed(arena, bands + 2, numbers);
+        for &number in numbers {
             let solid = view.solid(number);
             let (side, extent) = (facts.sides[number], view.extents.of(number));
             let (mut first, mut end) = extent.rows(grid.size);
@@ -62,8 +76,7 @@ impl<'f> Outlines<'f> {
                 (first, end) = (first.max(rows.0), end.min(rows.1));
             }
             let area = extent.area(grid.size);
-            let is_seen = kinds.hold(&solid)
-                && area > 0
+            let is_seen = area > 0
                 // From this stage on all solids take part, and a hidden one is never seen.
                 && !(facts.enclosed[number] && stage >= Stage::Shading)
                 // The surface mirrors nothing that is below.

@@ -7,26 +7,31 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
 
-/// The solids of a view that may be seen.
+/// The solids of a view that may be seen. What is asked of many lies apart from what is asked of
+/// few, so that it stays in the cache.
 pub(crate) struct PreparedSolids<'f> {
     pub(crate) mirrored: bool,
-    pub(crate) solids: &'f [PreparedSolid<'f>],
+    /// The side of the surface that each solid is on.
+    pub(crate) sides: &'f [Side],
+    pub(crate) appearance: &'f [Appearance<'f>],
+    pub(crate) depths: &'f [Depth<'f>],
     /// The order of the solids that a plane separates.
     pub(crate) separation: Separation<'f>,
 }
 
 impl<'f> PreparedSolids<'f> {
-    pub(crate) fn solid(&self, SolidIndex(index): SolidIndex) -> &PreparedSolid<'f> {
-        &self.solids[index as usize]
+    /// The side of the surface that a solid is on.
+    pub(crate) fn side(&self, SolidIndex(index): SolidIndex) -> Side {
+        self.sides[index as usize]
     }
-}
 
-/// A solid that may be seen.
-pub(crate) struct PreparedSolid<'f> {
-    /// The side of the surface that the solid is on.
-    pub(crate) side: Side,
-    pub(crate) depth: Depth<'f>,
-    pub(crate) appearance: Appearance<'f>,
+    pub(crate) fn appearance(&self, SolidIndex(index): SolidIndex) -> &Appearance<'f> {
+        &self.appearance[index as usize]
+    }
+
+    pub(crate) fn depth(&self, SolidIndex(index): SolidIndex) -> &Depth<'f> {
+        &self.depths[index as usize]
+    }
 }
 
 /// How the pixels of a solid are coloured.

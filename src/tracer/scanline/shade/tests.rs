@@ -102,8 +102,8 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
                 if solids.mirrored != mirrored {
                     continue;
                 }
-                for solid in solids.solids {
-                    if let Appearance::Sphere(shaded) = &solid.appearance {
+                for appearance in solids.appearance {
+                    if let Appearance::Sphere(shaded) = appearance {
                         for by_columns in [true, false] {
                             let counts = &mut counts[usize::from(by_columns)];
                             check(tracer, shaded, by_columns, (level, name), counts);

@@ -134,22 +134,23 @@ fn front(
     let mut others_begin = f64::INFINITY;
     for Near { index, lower: kept } in near {
         let other = &candidates[*index];
-        let solid = view.solid(other.solid);
-        let support = solid.depth.support(other.front_face);
+        let depth = view.depth(other.solid);
+        let support = depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
         // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
             && let first = &candidates[*first]
             && support.is_some()
-            && view.solid(first.solid).depth.support(first.front_face) == support
+            && view.depth(first.solid).support(first.front_face) == support
         {
             *kept = *begins;
             continue;
         }
-        let (lower, upper) = solid.depth.bounds(other.front_face, interval);
+        let (lower, upper) = depth.bounds(other.front_face, interval);
         *kept = lower;
         // Mirrored rays begin at the surface, and miss a solid that ends before.
-        if let Some((from, to)) = surface.filter(|_| test.mirrored && solid.side == Side::Across)
+        if let Some((from, to)) =
+            surface.filter(|_| test.mirrored && view.side(other.solid) == Side::Across)
             && lower <= to
         {
             if upper >= from {

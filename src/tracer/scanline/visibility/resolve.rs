@@ -20,7 +20,7 @@ pub(crate) fn visible(
         return Visible::IN_DOUBT;
     };
     // A solid above the surface hides the surface.
-    let hides = |&solid: &SolidIndex| direct.solid(solid).side == Side::Above;
+    let hides = |&solid: &SolidIndex| direct.side(solid) == Side::Above;
     let meets_surface = if met.iter().any(hides) {
         Some(false)
     } else {
@@ -70,7 +70,7 @@ fn visible_surface(
     }
     // The line of a mirrored ray may meet a solid that goes through the surface before the surface,
     // where the ray has not begun: the depth test decides.
-    let goes_through = |&solid: &SolidIndex| mirrored.solid(solid).side == Side::Across;
+    let goes_through = |&solid: &SolidIndex| mirrored.side(solid) == Side::Across;
     if !met.iter().any(goes_through)
         && let Some(solid) = mirrored.separation.first(met)
     {
@@ -84,7 +84,7 @@ fn visible_surface(
 
 /// What a gap shows where a solid is in front.
 fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) -> Candidate {
-    let (front_face, shown) = match &view.solid(solid).appearance {
+    let (front_face, shown) = match view.appearance(solid) {
         Appearance::Flat(paint) => (None, Shown::Paint(*paint)),
         Appearance::Sphere(_) => {
             let shown = Shown::Sphere {
