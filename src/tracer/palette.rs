@@ -11,23 +11,29 @@ use crate::scene::Scene;
 pub(super) struct Palette<'f> {
     /// Without solids first, then those of each solid, then those of its mirror image.
     slots: &'f [OnceLock<[f32; 3]>],
-    solids: usize,
+    spheres: usize,
+    tetrahedra: usize,
 }
 
 /// Four quadrants, the background, the surface and its shadow.
 const WITHOUT_SOLIDS: usize = 7;
 
-/// Four faces in the light, a sphere in flat colour, and either solid in shadow.
-const OF_A_SOLID: usize = 6;
+/// A sphere in shadow, and in flat colour.
+const OF_A_SPHERE: usize = 2;
+
+/// A tetrahedron in shadow, and its four faces in the light.
+const OF_A_TETRAHEDRON: usize = 5;
 
 impl<'f> Palette<'f> {
     /// An empty one.
     pub(super) fn new(scene: &Scene, arena: &'f Bump) -> Self {
-        let solids = scene.solid_count();
-        let count = WITHOUT_SOLIDS + 2 * solids * OF_A_SOLID;
+        let (spheres, tetrahedra) = (scene.spheres().len(), scene.tetrahedra().len());
+        let of_a_view = spheres * OF_A_SPHERE + tetrahedra * OF_A_TETRAHEDRON;
+        let count = WITHOUT_SOLIDS + 2 * of_a_view;
         Palette {
             slots: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),
-            solids,
+            spheres,
+            tetrahedra,
         }
     }
 
@@ -35,12 +41,14 @@ impl<'f> Palette<'f> {
     pub(super) fn get(&self, decision: Decision) -> &OnceLock<[f32; 3]> {
         let of_solid = |mirrored: usize, seen: Seen| {
             let slot = match seen.face {
-                _ if seen.in_shadow => 5,
-                None => 4,
-                Some(face) => usize::from(face),
+                _ if seen.in_shadow => 0,
+                None => 1,
+                Some(face) => 1 + usize::from(face),
             };
-            let solid = mirrored * self.solids + usize::from(seen.solid);
-            WITHOUT_SOLIDS + solid * OF_A_SOLID + slot
+            let solid = usize::from(seen.solid);
+            let spheres = mirrored * self.spheres + solid.min(self.spheres);
+            let tetrahedra = mirrored * self.tetrahedra + solid.saturating_sub(self.spheres);
+            WITHOUT_SOLIDS + spheres * OF_A_SPHERE + tetrahedra * OF_A_TETRAHEDRON + slot
         };
         &self.slots[match decision {
             Decision::Quadrant(number) => usize::from(number),
