@@ -95,7 +95,7 @@ use active::ActiveEdges;
 use grid::Columns;
 pub(super) use grid::ROWS;
 use low::LowEdges;
-use prepare::frame::PreparedFrame;
+use prepare::frame::{Crowd, PreparedFrame};
 use prepare::solids::Appearance;
 pub(super) use shade::policy::Precision;
 use shade::span::SpanShader;
@@ -107,8 +107,11 @@ pub(super) use write::history::RowHistory;
 use write::paint::PaintNumber;
 use write::row_writer::RowWriter;
 
-/// The mean number of solids behind a pixel from which on culling pays.
-const CULL_FROM: u64 = 4;
+/// From these crowds on, what is done for crowds pays.
+const CROWD: Crowd = Crowd {
+    cull_from: 4,
+    low_from: 256,
+};
 
 /// A frame, ready to be traced row by row.
 pub(super) struct RowTracer<'f, P> {
@@ -132,12 +135,12 @@ pub(super) struct Scratch {
 impl<'f, P: RowPixels> RowTracer<'f, P> {
     /// Prepares the frame of `pixels`.
     pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
-        RowTracer::culled_from(CULL_FROM, pixels, precision, level, arena)
+        RowTracer::with_crowd(CROWD, pixels, precision, level, arena)
     }
 
-    /// The same, with culling from `cull_from` solids behind a pixel on.
-    fn culled_from(
-        cull_from: u64,
+    /// The same, with another idea of what a crowd is.
+    fn with_crowd(
+        crowd: Crowd,
         pixels: &'f P,
         precision: Precision,
         level: Level,
@@ -146,7 +149,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let color = |decision| pixels.color(decision);
         RowTracer {
             pixels,
-            frame: PreparedFrame::new(pixels.bounded(), &color, cull_from, level, &arena.setup),
+            frame: PreparedFrame::new(pixels.bounded(), &color, crowd, level, &arena.setup),
             level,
             precision,
         }
@@ -243,7 +246,9 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             resolve,
         );
         writer.tally.edges += active.edge_count() as u64;
-        if low.enter(writer.row, &frame.edge_table, self.level, frame.grid) {
+        if frame.edge_table.has_low()
+            && low.enter(writer.row, &frame.edge_table, self.level, frame.grid)
+        {
             return self.trace_overlaid(writer, scratch);
         }
         writer.tally.spans += active.len() as u64;

@@ -29,7 +29,7 @@ enum BandEdges {
 /// An edge of a region, 4 · region + kind: the region begins possibly (0), begins certainly (1),
 /// ends certainly (2), ends possibly (3).
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Edge(u32);
+pub(crate) struct Edge(pub(crate) u32);
 
 impl Edge {
     /// The edges of a region whose possible columns are all certain, or not, from the left.

@@ -13,6 +13,24 @@ use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Packed, Visible};
 
+/// An edge of a region after its column in a row, in one word, which sorts faster than two.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct EdgeAt(u64);
+
+impl EdgeAt {
+    fn new(column: u32, edge: Edge) -> EdgeAt {
+        EdgeAt(u64::from(column) << 32 | u64::from(edge.0))
+    }
+
+    fn column(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    fn edge(self) -> Edge {
+        Edge(self.0 as u32)
+    }
+}
+
 /// The edges of low regions, and what is visible where they cross a row.
 #[derive(Default)]
 pub(crate) struct LowEdges {
@@ -20,8 +38,8 @@ pub(crate) struct LowEdges {
     first: Option<u32>,
     /// A bit for each row of the band: whether a low region reaches it.
     reached: u64,
-    /// The edges in each row of the band, after their columns.
-    edges: [Vec<(u32, Edge)>; ROWS],
+    /// The edges in each row of the band.
+    edges: [Vec<EdgeAt>; ROWS],
     /// Empty, except while a row is overlaid.
     coverage: Coverage,
     /// The column at which each span of the overlaid row ends, and what the span shows.
@@ -76,7 +94,7 @@ impl LowEdges {
                 let columns = [a[row], b[row], c[row], d[row]];
                 let is_certain = (a[row], d[row]) == (b[row], c[row]);
                 for edge in Edge::of(region as usize, is_certain) {
-                    self.edges[row].push((columns[edge.kind()], edge));
+                    self.edges[row].push(EdgeAt::new(columns[edge.kind()], edge));
                 }
             }
         }
@@ -102,8 +120,8 @@ impl LowEdges {
         let (mut from, mut covering) = (0, 0);
         for (to, alone, edge) in active.gaps(row) {
             loop {
-                let next = low.next_if(|(column, _)| *column < to);
-                let end = next.map_or(to, |(column, _)| *column);
+                let next = low.next_if(|next| next.column() < to);
+                let end = next.map_or(to, |next| next.column());
                 if from < end {
                     let visible = if covering == 0 {
                         alone
@@ -117,7 +135,9 @@ impl LowEdges {
                     }
                     from = end;
                 }
-                let Some((_, edge)) = next else { break };
+                let Some(edge) = next.map(|next| next.edge()) else {
+                    break;
+                };
                 self.coverage.cross(edge.region(), edge.cover());
                 covering += edge.step();
             }
@@ -125,7 +145,7 @@ impl LowEdges {
                 self.coverage.cross(edge.region(), edge.cover());
             }
         }
-        for (_, edge) in low {
+        for edge in low.map(|next| next.edge()) {
             self.coverage.cross(edge.region(), edge.cover());
         }
     }

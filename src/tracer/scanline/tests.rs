@@ -5,6 +5,7 @@
 
 use fearless_simd::Level;
 
+use super::prepare::frame::Crowd;
 use super::prepare::solids::Appearance;
 use super::visibility::coverage::Coverage;
 use super::visibility::visible::{DepthTests, Shown, Visible};
@@ -70,10 +71,14 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
             let arena = Arena::default();
             let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
             let name = text.lines().next().unwrap_or("built-in");
-            // Every frame is culled, or none.
-            for cull_from in [0, u64::MAX] {
+            // Every frame is one of a crowd, or none.
+            for (cull_from, low_from) in [(0, 0), (u64::MAX, usize::MAX)] {
+                let crowd = Crowd {
+                    cull_from,
+                    low_from,
+                };
                 let (precision, level) = (Precision::Certified, Level::baseline());
-                let tracer = RowTracer::culled_from(cull_from, &ladder, precision, level, &arena);
+                let tracer = RowTracer::with_crowd(crowd, &ladder, precision, level, &arena);
                 check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
             }
         }

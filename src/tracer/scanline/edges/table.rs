@@ -63,13 +63,18 @@ const MAX_LOW: u32 = 16;
 /// Whether a region with these rows is low: it leaves the active edges as soon as it has entered
 /// them.
 fn is_low((from, to): (u32, u32)) -> bool {
-    to <= from + MAX_LOW
+    from < to && to <= from + MAX_LOW
 }
 
 impl EdgeTable<'_> {
     /// The number of words that hold a bit for every region.
     pub(crate) fn words(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Whether any region is low.
+    pub(crate) fn has_low(&self) -> bool {
+        !self.low.is_empty()
     }
 
     /// The low regions that may have pixels in the band of rows from `first` on.
@@ -126,11 +131,15 @@ impl<'f> EdgeTableBuilder<'f> {
         receiver
     }
 
-    pub(crate) fn build(self, grid: Grid) -> EdgeTable<'f> {
+    /// Low regions are told apart if there are at least `low_from`.
+    pub(crate) fn build(self, low_from: usize, grid: Grid) -> EdgeTable<'f> {
+        let is_low = |region: &Region<'_>| is_low(region.rows());
+        let lows = self.regions.iter().filter(|region| is_low(region)).count();
+        let is_low = |region: &Region<'_>| lows >= low_from && is_low(region);
         let regions = self.regions.iter().enumerate();
         let low = regions.filter_map(|(number, region)| {
             let rows = region.rows();
-            (rows.0 < rows.1 && is_low(rows)).then_some((number as u32, rows))
+            is_low(region).then_some((number as u32, rows))
         });
         let low = low.flat_map(|(number, (from, to))| {
             let bands = from as usize / ROWS..(to as usize).div_ceil(ROWS);
@@ -141,7 +150,7 @@ impl<'f> EdgeTableBuilder<'f> {
         let rows = self.regions.chunks(64).map(|regions| {
             let mut rows = [[0; 64]; 2];
             for (bit, region) in regions.iter().enumerate() {
-                if !is_low(region.rows()) {
+                if !is_low(region) {
                     (rows[0][bit], rows[1][bit]) = region.rows();
                 }
             }

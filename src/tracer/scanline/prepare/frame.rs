@@ -17,6 +17,15 @@ use crate::tracer::scanline::prepare::solids::PreparedSolids;
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
 
+/// From which crowds on a frame is prepared in other ways than from a few solids.
+#[derive(Clone, Copy)]
+pub(crate) struct Crowd {
+    /// The mean number of solids behind a pixel from which on frames are culled.
+    pub(crate) cull_from: u64,
+    /// The number of regions of few rows from which on they are no active edges.
+    pub(crate) low_from: usize,
+}
+
 /// A frame, prepared for its rows.
 pub(crate) struct PreparedFrame<'f> {
     pub(crate) grid: Grid,
@@ -33,12 +42,11 @@ pub(crate) struct PreparedFrame<'f> {
 }
 
 impl<'f> PreparedFrame<'f> {
-    /// `color` tells the colour of a decision. Frames with a mean of `cull_from` solids behind a
-    /// pixel are culled.
+    /// `color` tells the colour of a decision.
     pub(crate) fn new(
         picture: &Picture<'_, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
-        cull_from: u64,
+        crowd: Crowd,
         level: Level,
         arena: &'f Bump,
     ) -> Self {
@@ -52,7 +60,7 @@ impl<'f> PreparedFrame<'f> {
         };
         let background = parts.paints.add(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
-        let is_crowded = outlines.depth_complexity(grid) >= cull_from;
+        let is_crowded = outlines.depth_complexity(grid) >= crowd.cull_from;
         let tiles = is_crowded.then(|| {
             let mut tiles = Tiles::new(grid, level, arena);
             outlines.cull(&mut tiles);
@@ -66,7 +74,7 @@ impl<'f> PreparedFrame<'f> {
         let quadrants = (picture.stage == Stage::Image).then(|| [0, 1, 2, 3].map(quadrant));
         PreparedFrame {
             grid,
-            edge_table: parts.edge_table.build(grid),
+            edge_table: parts.edge_table.build(crowd.low_from, grid),
             paints: parts.paints.all(),
             background,
             surface,
