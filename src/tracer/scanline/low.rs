@@ -105,7 +105,8 @@ impl LowEdges {
         self.edges[row as usize % ROWS].len()
     }
 
-    /// Lays the low regions over the gaps of a row that both have entered. `resolve` finds what is visible where these regions cover a column.
+    /// Lays the low regions over the gaps of a row that both have entered. `resolve` finds what is
+    /// visible where these regions cover a column.
     pub(crate) fn overlay(
         &mut self,
         row: u32,

@@ -53,9 +53,9 @@ impl<'f> Outlines<'f> {
             all: bumpalo::collections::Vec::with_capacity_in(view.solid_count(), arena),
             area: 0,
         };
-        // What a band of rows shows of spheres lies side by side in memory if they are prepared in the
-        // order of bands. Of solids with one support, the first in the scene stays first: spheres
-        // with one support have the same rows.
+        // What a band of rows shows of spheres lies side by side in memory if they are prepared in
+        // the order of bands. Of solids with one support, the first in the scene stays first:
+        // spheres with one support have the same rows.
         let bands = (grid.size as usize).div_ceil(ROWS);
         let count = view.solid_count();
         let numbers = (0..count).filter(|number| kinds.hold(&view.solid(*number)));

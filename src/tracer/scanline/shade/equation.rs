@@ -7,8 +7,17 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
 use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, Samples};
-use crate::tracer::scanline::shade::run::Outlook;
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight, ZONES};
+
+/// The classes of some pixels of a sphere, which tell how they are shaded.
+pub(crate) struct Classes {
+    /// The outermost zone that any of them is in.
+    pub(crate) zone: usize,
+    /// A bit for each: whether it may have a highlight.
+    pub(crate) bright: u64,
+    /// A bit for each: whether it lies beyond all zones.
+    pub(crate) beyond: u64,
+}
 
 // No closures below: see `shade/run.rs`.
 
@@ -73,7 +82,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     /// What the pixels of a run tell of themselves: those whose bits are set in `pixels`, from X =
     /// `x` on, in two vectors if one does not hold all, from `next` on.
     #[inline(always)]
-    pub(crate) fn outlook(&self, [x, next]: [f64; 2], pixels: u64) -> Outlook {
+    pub(crate) fn classify(&self, [x, next]: [f64; 2], pixels: u64) -> Classes {
         let lanes = LaneVector::<S, P>::LEN;
         let (mut inside, mut bright) = ([0; ZONES], 0);
         for (half, x) in [x, next].into_iter().enumerate() {
@@ -93,7 +102,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         let [innermost, inner, outermost] = inside;
         let shadeable = pixels & outermost;
         let is_out = |inside: u64| usize::from(shadeable & !inside != 0);
-        Outlook {
+        Classes {
             zone: is_out(innermost) + is_out(inner),
             bright: bright & shadeable,
             beyond: pixels & !outermost,

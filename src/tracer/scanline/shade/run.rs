@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::grid::{Columns, Grid};
-use crate::tracer::scanline::shade::equation::RowShader;
+use crate::tracer::scanline::shade::equation::{Classes, RowShader};
 use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
@@ -28,16 +28,6 @@ pub(crate) struct RunScratch {
 pub(crate) struct RunColumns {
     pub(crate) zones: [Columns; ZONES - 1],
     pub(crate) bright: Columns,
-}
-
-/// What is known of some pixels before they are shaded.
-pub(crate) struct Outlook {
-    /// The outermost zone that any of them is in.
-    pub(crate) zone: usize,
-    /// A bit for each: whether it may have a highlight.
-    pub(crate) bright: u64,
-    /// A bit for each: whether it lies beyond all zones.
-    pub(crate) beyond: u64,
 }
 
 /// The pixels of a run: where they are, and where their samples go.
@@ -72,21 +62,21 @@ impl Run<'_> {
 
     /// What is known of the first `here` of `width` pixels from pixel `first` on.
     #[inline(always)]
-    fn outlook<S: Simd, P: Policy<S>>(
+    fn classify<S: Simd, P: Policy<S>>(
         &self,
         row: &RowShader<'_, S, P>,
         first: usize,
         here: usize,
-    ) -> Outlook {
+    ) -> Classes {
         let begin = self.from + first as u32;
         let Some(RunColumns { zones, bright }) = self.columns else {
             let lanes = LaneVector::<S, P>::LEN;
-            return row.outlook(self.x(first, lanes), u64::MAX >> (64 - here));
+            return row.classify(self.x(first, lanes), u64::MAX >> (64 - here));
         };
         let is_out = |(from, to): Columns| begin < from || begin + here as u32 > to;
         let [innermost, inner] = zones;
         let (end, (from, to)) = (begin + S::f32s::LEN as u32, bright);
-        Outlook {
+        Classes {
             zone: usize::from(is_out(innermost)) + usize::from(is_out(inner)),
             bright: (1 << (to.clamp(begin, end) - begin)) - (1 << (from.clamp(begin, end) - begin)),
             beyond: 0,
@@ -153,11 +143,11 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
                 in_doubt |= doubts << (half * lanes);
             }
         }
-        let Outlook {
+        let Classes {
             zone,
             bright,
             beyond,
-        } = run.outlook(&row, first, here);
+        } = run.classify(&row, first, here);
         in_shadow &= !beyond;
         in_doubt |= beyond;
         let samples = &mut run.samples[3 * first..3 * (first + here)];
