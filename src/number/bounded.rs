@@ -222,6 +222,13 @@ impl Real for Bounded {
     }
 
     fn one_minus_to_the(self, exponent: u32) -> Bounded {
+        // (1 − x)ⁿ ≤ e⁻ⁿˣ: beside most highlights that is nothing.
+        if f64::from(exponent) * self.at_least() > 200.0 {
+            return Bounded {
+                value: 0.0,
+                error: 1e-86,
+            };
+        }
         DoubleDouble::from(self).one_minus_to_the(exponent).into()
     }
 
