@@ -61,8 +61,8 @@ type Enclosure = Option<Arc<Interval>>;
 #[derive(Default)]
 pub(crate) struct Session {
     operations: Vec<Operation>,
-    /// What each was evaluated to with each of [`BITS`], if it was.
-    evaluated: Vec<[Option<Enclosure>; BITS.len()]>,
+    /// What each was evaluated to with each of [`BITS`], if it was: most never are.
+    evaluated: Vec<Option<Box<[Option<Enclosure>; BITS.len()]>>>,
     /// Sines and cosines by the bits of their angle and the number among [`BITS`]. They outlive
     /// the operations: they are dear.
     turns: HashMap<(u64, usize), [Enclosure; 2]>,
@@ -84,7 +84,7 @@ impl Expression {
     fn new(operation: Operation, near: DoubleDouble) -> Expression {
         SESSION.with_borrow_mut(|session| {
             session.operations.push(operation);
-            session.evaluated.push(Default::default());
+            session.evaluated.push(None);
             let place = session.operations.len() - 1;
             Expression { place, near }
         })
@@ -188,7 +188,9 @@ impl Session {
 
     /// What is at `place`, with the bits that have this number.
     fn evaluate(&mut self, place: usize, precision: usize) -> Enclosure {
-        if let Some(known) = &self.evaluated[place][precision] {
+        if let Some(evaluated) = &self.evaluated[place]
+            && let Some(known) = &evaluated[precision]
+        {
             return known.clone();
         }
         let bits = BITS[precision];
@@ -207,7 +209,7 @@ impl Session {
                     .clipped_power(exponent)
             }),
         };
-        self.evaluated[place][precision] = Some(enclosure.clone());
+        self.evaluated[place].get_or_insert_default()[precision] = Some(enclosure.clone());
         enclosure
     }
 
