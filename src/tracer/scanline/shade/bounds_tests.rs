@@ -18,7 +18,7 @@ use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
 use crate::tracer::scanline::shade::equation::RowShader;
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
@@ -164,6 +164,19 @@ struct Case<'c> {
 }
 
 impl Case<'_> {
+    /// Checks what the pixel at X = `x` finds out about its zone, where it has this s.
+    #[inline(always)]
+    fn check_classes<S: Simd>(&self, in_row: &RowShader<'_, S, Certified>, x: f64, s: f64) {
+        let least = self.constants.min_squares;
+        let is_near = |least: &f64| (s * s - least).abs() < 1e-9 * least;
+        if !least.iter().any(is_near) {
+            let classes = in_row.classify([x, x], 1);
+            let zone = least.iter().take_while(|least| s * s < **least).count();
+            assert_eq!(classes.beyond, u64::from(zone == ZONES));
+            assert!(classes.beyond == 1 || classes.zone == zone, "s = {s}");
+        }
+    }
+
     #[inline(always)]
     fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
         let constants = &self.constants;
@@ -183,6 +196,7 @@ impl Case<'_> {
                 in_row.lit(x, facing, &ambient, (zone, u64::MAX))
             });
             let forms = self.forms.map(|form| in_row.value(&form, &hits));
+            self.check_classes(&in_row, x, hits.s.as_slice()[0]);
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = constants.squared_radius - m * m - q * q;
