@@ -297,7 +297,6 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     }
 
     /// Writes the columns of a span.
-    #[inline(always)]
     fn show<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
@@ -319,7 +318,6 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     }
 
     /// Writes columns that all show the same.
-    #[inline(always)]
     fn write<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
