@@ -389,16 +389,20 @@ pub(super) const QUADRANTS: [DVec3; 4] = [
     DVec3::ZERO,
 ];
 
-/// Code 2-1, the order of its `<=` and `>=` kept, with 250 read as N/2.
+/// The number of columns in the left half of Code 2-1, and of rows in its lower half, with 250 read
+/// as N/2. The first of its `<=` and `>=` that holds decides: what lies at N/2 is to the left, and
+/// below.
+pub(super) fn left_half(size: u32) -> u32 {
+    size / 2 + 1
+}
+
+/// The quadrant of Code 2-1, in the order of its branches.
 pub(super) fn quadrant(column: u32, row: u32, size: u32) -> u8 {
-    let (x, y) = (2 * column, 2 * row);
-    if x <= size && y <= size {
-        0
-    } else if x <= size && y >= size {
-        1
-    } else if x >= size && y <= size {
-        2
-    } else {
-        3
+    let half = left_half(size);
+    match (column < half, row < half) {
+        (true, true) => 0,
+        (true, false) => 1,
+        (false, true) => 2,
+        (false, false) => 3,
     }
 }

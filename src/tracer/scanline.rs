@@ -88,7 +88,7 @@ use fearless_simd::Level;
 use super::arena::Arena;
 use super::decision::Decision;
 use super::ladder::RowPixels;
-use super::pixel::quadrant;
+use super::pixel::{left_half, quadrant};
 use super::progress::Progress;
 use super::tally::Tally;
 use active::ActiveEdges;
@@ -214,7 +214,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     /// Code 2-1, in which the left half of a row shows one quadrant and the right half another.
     fn trace_quadrants<'r>(&'r self, writer: &mut RowWriter<'r>, quadrants: &[PaintNumber; 4]) {
         let size = self.frame.grid.size;
-        let middle = (size / 2 + 1).min(size);
+        let middle = left_half(size).min(size);
         for columns in [(0, middle), (middle, size)] {
             if columns.0 < columns.1 {
                 let paint = quadrants[usize::from(quadrant(columns.0, writer.row, size))];

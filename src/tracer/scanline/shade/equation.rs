@@ -225,7 +225,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         let m = self.m * self.sphere.inverse_radius - m;
         let s = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -s));
         let squared = q * q + s * s + of(m * m);
-        let one_minus = (squared * of(0.5)).min(of(1.0 - self.sphere.threshold));
+        let one_minus = (squared * of(0.5)).min(of(self.sphere.one_minus_threshold));
         let power = power::<S, P>(simd, one_minus, self.sphere.exponent);
         let power = P::where_bright(simd, power, bright);
         let [constant, slope] = highlight.errors[zone];

@@ -81,6 +81,7 @@ impl Lighting {
         let n = f64::from(exponent);
         // (1 − x)ⁿ ≤ e^−nx.
         let threshold = libm::exp(CUT / n);
+        let one_minus_threshold = 1.0 - threshold;
         Lighting {
             axes,
             to_light_unit: axes.of(shading.to_light_unit()),
@@ -90,9 +91,9 @@ impl Lighting {
             highlight: Highlight {
                 exponent,
                 threshold,
-                one_minus_threshold: -libm::expm1(CUT / n),
+                one_minus_threshold,
                 // 1 − n·h = |n − h|²/2.
-                max_distance: (2.0 * (1.0 - threshold)).sqrt() * INFLATION,
+                max_distance: (2.0 * one_minus_threshold).sqrt() * INFLATION,
                 steepest: 1.0 / n.sqrt(),
                 smallest_power: libm::exp2(1.0 - n),
             },

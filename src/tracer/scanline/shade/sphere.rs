@@ -231,6 +231,8 @@ pub(crate) struct SphereConstants {
     pub(crate) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
     pub(crate) threshold: f64,
+    /// 1 − n·h at the threshold.
+    pub(crate) one_minus_threshold: f64,
     pub(crate) color: Coefficients,
     /// In each zone, a bound on the error of any channel without that of the highlight.
     pub(crate) errors: [f64; ZONES],
@@ -332,6 +334,7 @@ impl SphereConstants {
             highlight: sphere_highlight,
             exponent: highlight.exponent,
             threshold: highlight.threshold,
+            one_minus_threshold: highlight.one_minus_threshold,
             color: Coefficients {
                 ambient: cycle(0),
                 diffuse: cycle(1),
