@@ -6,8 +6,8 @@
 //!
 //! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show,
 //!   points and rays;
-//! - `view_space`, `view_transform`, `view`: view space, into which the scene and its mirror image
-//!   are turned by α;
+//! - `view_space`, `view_transform`, `view_signs`, `view`: view space, into which the scene and its
+//!   mirror image are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
 //! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
@@ -58,6 +58,7 @@ mod target;
 mod tetrahedron;
 mod vector;
 mod view;
+mod view_signs;
 mod view_space;
 mod view_transform;
 

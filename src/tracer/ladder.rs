@@ -15,7 +15,7 @@ use super::palette::Palette;
 use super::pixel::{Picture, Pixel, mirrors};
 use super::pool::lock;
 use super::vector::Vector;
-use super::view::FrameSigns;
+use super::view_signs::FrameSigns;
 use super::view_transform::ViewTransform;
 use crate::number::{Bounded, DoubleDouble, Doubt, Expression, Real, Session};
 use crate::scene::Scene;

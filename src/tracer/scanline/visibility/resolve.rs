@@ -6,7 +6,8 @@ use crate::tracer::scanline::prepare::frame::PreparedFrame;
 use crate::tracer::scanline::prepare::solids::{Appearance, FrontFace, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
-use crate::tracer::scanline::visibility::visible::{Candidate, DepthTests, Shown, Visible};
+use crate::tracer::scanline::visibility::depth_test::{Candidate, DepthTests};
+use crate::tracer::scanline::visibility::visible::{Shown, Visible};
 use crate::tracer::tetrahedron::last_entered;
 
 /// What a gap with this coverage shows. If rows have to decide, a test is added to `depth_tests`.
