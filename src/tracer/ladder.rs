@@ -64,28 +64,29 @@ impl<'f> FrameSetup<'f> {
         let plain = transform::<f64>(alpha, size);
         let double_double = LazyCell::new(|| transform::<DoubleDouble>(alpha, size));
         let signs = |mirrored| {
-            bounded
+            let Ok(signs) = bounded
                 .signs(scene, &plain, mirrored, arena)
                 .or_else(|Doubt| double_double.signs(scene, &plain, mirrored, arena))
                 .or_else(|Doubt| {
                     Expression::session(|| {
                         transform::<Expression>(alpha, size).signs(scene, &plain, mirrored, arena)
                     })
+                });
+            signs.refined(scene, &bounded, mirrored, || {
+                Expression::session(|| {
+                    let h = transform::<Expression>(alpha, size).halfway(scene, mirrored);
+                    Vector {
+                        x: h.x.to_double_double(),
+                        y: h.y.to_double_double(),
+                        z: h.z.to_double_double(),
+                    }
                 })
-                .map(|signs| {
-                    signs.refined(scene, &bounded, mirrored, || {
-                        Expression::session(|| {
-                            let h = transform::<Expression>(alpha, size).halfway(scene, mirrored);
-                            Vector {
-                                x: h.x.to_double_double(),
-                                y: h.y.to_double_double(),
-                                z: h.z.to_double_double(),
-                            }
-                        })
-                    })
-                })
+            })
         };
-        let Ok(signs) = FrameSigns::decide(mirrors(scene, stage), signs);
+        let signs = FrameSigns {
+            direct: signs(false),
+            mirrored: mirrors(scene, stage).then(|| signs(true)),
+        };
         FrameSetup {
             transform: bounded,
             signs,

@@ -97,8 +97,8 @@ impl<R: Real> Tetrahedron<R> {
             if face_signs[i].is_ge() && face_signs[j].is_ge() {
                 return Vector::exact(DVec3::ZERO);
             }
-            let moment = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
-            if self.right_handed { moment } else { -moment }
+            let normal = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
+            if self.right_handed { normal } else { -normal }
         });
         let n_dot_d = [0, 1, 2, 3].map(|face| match face_signs[face] {
             Ordering::Less => self.normals[face].dot(direction.vector),

@@ -104,17 +104,3 @@ pub(super) struct FrameSigns<'f> {
     pub(super) direct: ViewSigns<'f>,
     pub(super) mirrored: Option<ViewSigns<'f>>,
 }
-
-impl<'f> FrameSigns<'f> {
-    /// `signs` decides those of the scene itself (false) or of its mirror image (true). The latter
-    /// are needed if the surface `mirrors`.
-    pub(super) fn decide<D>(
-        mirrors: bool,
-        signs: impl Fn(bool) -> Result<ViewSigns<'f>, D>,
-    ) -> Result<Self, D> {
-        Ok(FrameSigns {
-            direct: signs(false)?,
-            mirrored: if mirrors { Some(signs(true)?) } else { None },
-        })
-    }
-}

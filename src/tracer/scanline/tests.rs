@@ -213,7 +213,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                                 Decision::Solid(_) | Decision::Mirrored(_),
                             ) => {
                                 let appearance = tracer.frame.solids(mirrored).appearance(solid);
-                                matches!(appearance, Appearance::Sphere(sphere) if sphere.lit == lit(decision))
+                                matches!(appearance, Appearance::Sphere(sphere) if sphere.in_light == lit(decision))
                             }
                             (Shown::Sphere { .. }, _) => false,
                         };

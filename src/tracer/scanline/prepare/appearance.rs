@@ -146,7 +146,7 @@ impl<'p, 's> Appearances<'p, 's> {
             number: parts.shaded_spheres - 1,
             constants,
             casters,
-            lit: self.decision(number, None, false),
+            in_light: self.decision(number, None, false),
             in_shadow: paint(self.has_shadows),
         }))
     }

@@ -12,7 +12,7 @@ use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, along_eye_ray, eye_direction
 
 /// The parameter at which eye rays enter a solid.
 pub(crate) enum Depth<'f> {
-    /// g/109 − s/√109, with g = (c − o)·d, and s² = R² − m² − q² as in `shade/sphere.rs`.
+    /// along/109 − s/√109, with along = (c − o)·d, and s² = R² − m² − q² as in `shade/sphere.rs`.
     Sphere {
         /// m of each row.
         m: RowOffset,
@@ -20,8 +20,8 @@ pub(crate) enum Depth<'f> {
         squared_radius: f64,
         /// c_x.
         center_x: f64,
-        /// g as a linear function of Y: its constant and its slope.
-        g: [f64; 2],
+        /// (c − o)·d as a linear function of Y: its constant and its slope.
+        along: [f64; 2],
         /// A bound on the error of the depth, without that of s².
         error: f64,
         /// A bound on the error of s².
@@ -86,7 +86,7 @@ impl Depth<'_> {
                 m,
                 squared_radius,
                 center_x,
-                g,
+                along,
                 error,
                 squared_error,
                 ..
@@ -98,7 +98,7 @@ impl Depth<'_> {
                 let max_s = (squared(0) + squared_error).max(0.0).sqrt() * INFLATION;
                 // 1/√109, from below and from above.
                 const ROOT: f64 = 0.095_782_628_522_115_14;
-                let [low, high] = rectangle.y.map(|y| (g[0] + g[1] * y) / EYE_SQUARED);
+                let [low, high] = rectangle.y.map(|y| (along[0] + along[1] * y) / EYE_SQUARED);
                 bounds(
                     low - max_s * ROOT * INFLATION - error,
                     high - min_s * ROOT / INFLATION / INFLATION + error,
@@ -143,7 +143,7 @@ impl Depth<'_> {
             m: outline.m,
             squared_radius: outline.squared_radius,
             center_x: center.x.value(),
-            g: [constant.value(), EYE_Y],
+            along: [constant.value(), EYE_Y],
             error: (constant.error() + 8.0 * U * (magnitude + radius)) * INFLATION,
             squared_error: (outline.chord_error + (2.0 * max_q + q) * q + 8.0 * U * max_q * max_q)
                 * INFLATION,

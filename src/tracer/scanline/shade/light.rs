@@ -41,7 +41,7 @@ pub(crate) struct Lighting {
     /// l, of length 1.
     pub(crate) to_light_unit: [Bounded; 3],
     /// The vectors whose products with n are the components of n × l, with an l of any length.
-    pub(crate) moment: [[Bounded; 3]; 3],
+    pub(crate) cross_l: [[Bounded; 3]; 3],
     /// −l.
     pub(crate) before: [Bounded; 3],
     /// h, of length 1; `None` where there is no highlight.
@@ -72,7 +72,7 @@ impl Lighting {
         let axes = Axes::new();
         let l = shading.to_light.vector;
         let zero = Bounded::exact(0.0);
-        let moment = [
+        let cross_l = [
             Vector::new(zero, l.z, -l.y),
             Vector::new(-l.z, zero, l.x),
             Vector::new(l.y, -l.x, zero),
@@ -85,7 +85,7 @@ impl Lighting {
         Lighting {
             axes,
             to_light_unit: axes.of(shading.to_light_unit()),
-            moment: moment.map(|vector| axes.of(vector)),
+            cross_l: cross_l.map(|vector| axes.of(vector)),
             before: axes.of(-l),
             halfway: shading.halfway().map(|h| axes.of(h)),
             highlight: Highlight {

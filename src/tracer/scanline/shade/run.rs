@@ -104,7 +104,7 @@ impl Run<'_> {
                 *decision = if in_shadow >> i & 1 == 1 {
                     self.in_shadow.decision
                 } else {
-                    shaded.lit
+                    shaded.in_light
                 };
             }
         }

@@ -12,7 +12,7 @@ pub(crate) struct ShadedSphere<'f> {
     pub(crate) constants: SphereConstants,
     pub(crate) casters: &'f [Caster<'f>],
     /// The decision of its pixels in the light.
-    pub(crate) lit: Decision,
+    pub(crate) in_light: Decision,
     /// The paint of its pixels in shadow.
     pub(crate) in_shadow: PaintNumber,
 }

@@ -381,7 +381,7 @@ impl SphereConstants {
     /// The components of n × l, and −n·l, with n of the radius's length: the parts of
     /// [`SphereConstants::moment`] that are the same for all casters.
     pub(crate) fn own_moment(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
-        let moment = lighting.moment.map(|factors| self.bounds.form(factors));
+        let moment = lighting.cross_l.map(|factors| self.bounds.form(factors));
         (moment, self.bounds.form(lighting.before))
     }
 

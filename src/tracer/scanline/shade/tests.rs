@@ -75,7 +75,7 @@ fn check(
         dispatch!(level, simd => shade::<_, Certified>(simd, shaded, &mut run));
         for (column, (samples, decided)) in (from..).zip(samples.chunks(3).zip(decisions)) {
             let ((decision, color), _) = tracer.pixels.pixel(column, row);
-            if lit(decision) != shaded.lit {
+            if lit(decision) != shaded.in_light {
                 continue;
             }
             if scratch.doubts.contains(&column) {

@@ -202,7 +202,7 @@ fn front(
     y: f64,
     columns: Columns,
 ) -> Front {
-    let view = frame.solids(test.mirrored);
+    let solids = frame.solids(test.mirrored);
     let surface = frame.surface.as_ref().map(|surface| surface.depth_at(y));
     let interval = Rectangle {
         x: [columns.0, columns.1 - 1].map(|column| frame.grid.coordinate(column)),
@@ -216,14 +216,14 @@ fn front(
     let mut others_begin = f64::INFINITY;
     for Near { index, lower: kept } in near {
         let other = &candidates[*index];
-        let depth = view.depth(other.solid);
+        let depth = solids.depth(other.solid);
         let support = depth.support(other.front_face);
         let (front, (begins, ends_first)) = &candidate;
         // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
             && let first = &candidates[*first]
             && support.is_some()
-            && view.depth(first.solid).support(first.front_face) == support
+            && solids.depth(first.solid).support(first.front_face) == support
         {
             *kept = *begins;
             continue;
@@ -232,7 +232,7 @@ fn front(
         *kept = lower;
         // Mirrored rays begin at the surface, and miss a solid that ends before.
         if let Some((from, to)) =
-            surface.filter(|_| test.mirrored && view.side(other.solid) == Side::Across)
+            surface.filter(|_| test.mirrored && solids.side(other.solid) == Side::Across)
             && lower <= to
         {
             if upper >= from {

@@ -84,12 +84,12 @@ fn visible_surface(
 }
 
 /// What a gap shows where a solid is in front.
-fn candidate(view: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) -> Candidate {
-    let (front_face, shown) = match view.appearance(solid) {
+fn candidate(solids: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage) -> Candidate {
+    let (front_face, shown) = match solids.appearance(solid) {
         Appearance::Flat(paint) => (None, Shown::Paint(*paint)),
         Appearance::Sphere(_) => {
             let shown = Shown::Sphere {
-                mirrored: view.mirrored,
+                mirrored: solids.mirrored,
                 solid,
             };
             (None, shown)
