@@ -28,7 +28,7 @@ pub(super) struct Tetrahedron<R> {
     /// The plane of each face.
     supports: [Support; 4],
     /// The sign of n·l for each face.
-    facing_light: [Ordering; 4],
+    pub(super) facing_light: [Ordering; 4],
 }
 
 /// The edge functions of a tetrahedron for all lines of one direction d.
@@ -109,11 +109,6 @@ impl<R: Real> Tetrahedron<R> {
             n_dot_d,
             edge_normals,
         }
-    }
-
-    /// The edge functions for the direction to the light.
-    pub(super) fn edge_functions_to_light(&self, to_light: &Direction<R>) -> EdgeFunctions<R> {
-        self.edge_functions(to_light, self.facing_light)
     }
 
     /// The normal of a face, which is that of all its points.

@@ -106,7 +106,7 @@ impl<'f, R: Real> View<'f, R> {
             .map(|(index, &face_signs)| {
                 let solid = transform.tetrahedron(scene, index, mirror_height);
                 let eye_edges = solid.edge_functions(&eye_direction(), face_signs);
-                let light_edges = solid.edge_functions_to_light(&to_light);
+                let light_edges = solid.edge_functions(&to_light, solid.facing_light);
                 TetrahedronInView {
                     solid,
                     eye_edges,
