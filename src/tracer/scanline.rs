@@ -128,6 +128,12 @@ pub(super) struct Scratch {
     active: ActiveEdges,
     low: LowEdges,
     depth_tests: DepthTests,
+    painters: Painters,
+}
+
+/// What finds out what the columns of a span show, where one fill is not enough.
+#[derive(Default)]
+struct Painters {
     depth_tester: DepthTester,
     shader: SpanShader,
 }
@@ -162,7 +168,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             .begin(&self.frame.edge_table, self.frame.grid);
         scratch.low.begin(&self.frame.edge_table);
         scratch.depth_tests.clear();
-        scratch.shader.begin(self.frame.shaded_spheres);
+        scratch.painters.shader.begin(self.frame.shaded_spheres);
     }
 
     /// Traces neighbouring rows into their samples and, if given, decisions. Returns what
@@ -225,93 +231,65 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
     }
 
     fn trace_row<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
-        let frame = &self.frame;
+        let (frame, table) = (&self.frame, &self.frame.edge_table);
         let Scratch {
             active,
             low,
             depth_tests,
-            depth_tester,
-            shader,
+            painters,
         } = scratch;
         if depth_tests.is_full() {
             depth_tests.clear();
             active.forget();
         }
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
-        active.enter(
-            writer.row,
-            &frame.edge_table,
-            self.level,
-            frame.grid,
-            resolve,
-        );
+        active.enter(writer.row, table, self.level, frame.grid, resolve);
         writer.tally.edges += active.edge_count() as u64;
-        if frame.edge_table.has_low()
-            && low.enter(writer.row, &frame.edge_table, self.level, frame.grid)
-        {
+        if table.has_low() && low.enter(writer.row, table, self.level, frame.grid) {
             return self.trace_overlaid(writer, scratch);
         }
-        writer.tally.spans += active.len() as u64;
-        let mut from = 0;
-        for span in 0..active.len() {
-            let (to, visible) = active.span(span, writer.row);
-            self.show(
-                writer,
-                (from, to),
-                visible,
-                (depth_tester, depth_tests, shader),
-            );
-            from = to;
-        }
+        self.show(writer, active.spans(writer.row), depth_tests, painters);
     }
 
     /// Traces a row that low regions reach.
     #[inline(never)]
     fn trace_overlaid<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
         let frame = &self.frame;
-        let Scratch {
-            active,
-            low,
-            depth_tests,
-            depth_tester,
-            shader,
-        } = scratch;
+        let (low, depth_tests) = (&mut scratch.low, &mut scratch.depth_tests);
         let tests = depth_tests.count();
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
-        low.overlay(writer.row, &frame.edge_table, active, resolve);
+        low.overlay(writer.row, &frame.edge_table, &scratch.active, resolve);
         writer.tally.edges += low.edge_count(writer.row) as u64;
-        writer.tally.spans += low.spans().len() as u64;
-        let mut from = 0;
-        for &(to, visible) in low.spans() {
-            let visible = visible.visible();
-            self.show(
-                writer,
-                (from, to),
-                visible,
-                (depth_tester, depth_tests, shader),
-            );
-            from = to;
-        }
+        self.show(writer, low.spans(), depth_tests, &mut scratch.painters);
         // No other row can use the tests of gaps with low regions.
         depth_tests.truncate(tests);
     }
 
-    /// Writes the columns of a span.
+    /// Writes the spans of a row: the column at which each ends, and what it shows.
     fn show<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
-        columns: Columns,
-        visible: Visible,
-        (depth_tester, depth_tests, shader): (&mut DepthTester, &DepthTests, &mut SpanShader),
+        spans: impl ExactSizeIterator<Item = (u32, Visible)>,
+        depth_tests: &DepthTests,
+        Painters {
+            depth_tester,
+            shader,
+        }: &mut Painters,
     ) {
-        match visible {
-            // The span has no columns in this row, but may have some in the next.
-            _ if columns.0 == columns.1 => {}
-            Visible::Only(shows) => self.write(writer, columns, shows, shader),
-            Visible::DepthTest(_) => {
-                let parts = depth_tester.test(&self.frame, depth_tests, visible, writer.y, columns);
-                for (columns, shows) in parts {
-                    self.write(writer, columns, shows, shader);
+        writer.tally.spans += spans.len() as u64;
+        let mut from = 0;
+        for (to, visible) in spans {
+            let columns = (from, to);
+            from = to;
+            match visible {
+                // The span has no columns in this row, but may have some in the next.
+                _ if columns.0 == columns.1 => {}
+                Visible::Only(shows) => self.write(writer, columns, shows, shader),
+                Visible::DepthTest(_) => {
+                    let row = (&self.frame, depth_tests, writer.y);
+                    for (columns, shows) in depth_tester.test(row, visible, columns) {
+                        self.write(writer, columns, shows, shader);
+                    }
                 }
             }
         }

@@ -182,16 +182,11 @@ impl ActiveEdges {
         self.edges.len()
     }
 
-    /// The number of spans of the row.
-    pub(crate) fn len(&self) -> usize {
-        self.spans.len() - 1
-    }
-
-    /// The column at which a span of the row ends, and what the span shows.
-    pub(crate) fn span(&self, number: usize, row: u32) -> (u32, Visible) {
-        let Span { to, visible } = self.spans[number + 1];
-        let to = self.sorted_columns[to as usize][row as usize % ROWS];
-        (to, visible.visible())
+    /// The spans of the row, from the left: the column at which each ends, and what it shows.
+    pub(crate) fn spans(&self, row: u32) -> impl ExactSizeIterator<Item = (u32, Visible)> {
+        let column = move |edge: u32| self.sorted_columns[edge as usize][row as usize % ROWS];
+        let spans = self.spans[1..].iter();
+        spans.map(move |span| (column(span.to), span.visible.visible()))
     }
 
     /// The gaps of the row, from the left: the column at which each ends, what it shows if it has
@@ -343,11 +338,7 @@ impl ActiveEdges {
         first: u32,
         grid: Grid,
     ) -> BandEdges {
-        let shape = &table.regions[region];
-        let mut band = shape.cross(simd, first, grid);
-        if !band.is_certain {
-            shape.narrow(&mut band, first, grid);
-        }
+        let mut band = table.regions[region].cross(simd, first, grid);
         if band.filled == 0 {
             return BandEdges::None;
         }

@@ -54,7 +54,6 @@ impl LowEdges {
     }
 
     /// Goes to a row. Returns whether any low region reaches it.
-    #[inline]
     pub(crate) fn enter(
         &mut self,
         row: u32,
@@ -64,27 +63,19 @@ impl LowEdges {
     ) -> bool {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
-            self.enter_band(first, table, level, grid);
+            self.first = Some(first);
+            dispatch!(level, simd => self.cross_band(simd, table, first, grid));
         }
         self.reached >> (row - first) & 1 == 1
-    }
-
-    fn enter_band(&mut self, first: u32, table: &EdgeTable<'_>, level: Level, grid: Grid) {
-        self.first = Some(first);
-        self.edges.iter_mut().for_each(Vec::clear);
-        self.reached = 0;
-        dispatch!(level, simd => self.cross_band(simd, table, first, grid));
     }
 
     /// Crosses the low regions that reach the band of rows from `first` on.
     #[inline(always)]
     fn cross_band<S: Simd>(&mut self, simd: S, table: &EdgeTable<'_>, first: u32, grid: Grid) {
+        self.edges.iter_mut().for_each(Vec::clear);
+        self.reached = 0;
         for &region in table.low(first) {
-            let shape = &table.regions[region as usize];
-            let mut band = shape.cross(simd, first, grid);
-            if !band.is_certain {
-                shape.narrow(&mut band, first, grid);
-            }
+            let band = table.regions[region as usize].cross(simd, first, grid);
             let ([a, d], [b, c]) = (band.possible, band.certain);
             let mut filled = band.filled;
             self.reached |= filled;
@@ -152,7 +143,8 @@ impl LowEdges {
     }
 
     /// The spans of the overlaid row: the column at which each ends, and what it shows.
-    pub(crate) fn spans(&self) -> &[(u32, Packed)] {
-        &self.spans
+    pub(crate) fn spans(&self) -> impl ExactSizeIterator<Item = (u32, Visible)> {
+        let spans = self.spans.iter();
+        spans.map(|(to, visible)| (*to, visible.visible()))
     }
 }

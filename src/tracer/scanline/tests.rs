@@ -104,10 +104,7 @@ fn spans<P: RowPixels>(
     active.enter(row, table, level, grid, &mut resolve);
     low.enter(row, table, level, grid);
     low.overlay(row, table, active, resolve);
-    let spans = low.spans().iter();
-    spans
-        .map(|(to, visible)| (*to, visible.visible()))
-        .collect()
+    low.spans().collect()
 }
 
 /// What is visible, in words that do not depend on the numbers of depth tests.
@@ -196,7 +193,8 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut depth_tester = DepthTester::default();
                 let (frame, tests) = (&tracer.frame, &scratch.depth_tests);
-                for ((first, end), shown) in depth_tester.test(frame, tests, visible, y, (from, to))
+                for ((first, end), shown) in
+                    depth_tester.test((frame, tests, y), visible, (from, to))
                 {
                     for column in first..end {
                         let ((decision, _), _) = tracer.pixels.pixel(column, row);

@@ -81,6 +81,16 @@ impl<'f> Region<'f> {
     /// The region's columns in the band of rows from `row` on.
     #[inline(always)]
     pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
+        let mut band = self.enclose(simd, row, grid);
+        if !band.is_certain {
+            self.narrow(&mut band, row, grid);
+        }
+        band
+    }
+
+    /// The same as far as bounds on roots tell.
+    #[inline(always)]
+    fn enclose<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
         let mut band = BandColumns::NONE;
         for first in (0..ROWS).step_by(S::f64s::LEN) {
             let y = offsets::<S>(simd, first) + grid.coordinate(row);
@@ -117,7 +127,7 @@ impl<'f> Region<'f> {
     }
 
     /// Decides the columns in doubt one by one, from the outside in.
-    pub(crate) fn narrow(&self, band: &mut BandColumns, row: u32, grid: Grid) {
+    fn narrow(&self, band: &mut BandColumns, row: u32, grid: Grid) {
         band.is_certain = true;
         for i in 0..ROWS {
             let (mut from, mut to) = (band.possible[0][i], band.possible[1][i]);
@@ -250,7 +260,7 @@ mod tests {
             let region = Region::new(&half_planes, ellipse, grid);
             for first in (0..SIZE).step_by(ROWS) {
                 let mut band =
-                    dispatch!(Level::baseline(), simd => region.cross(simd, first, grid));
+                    dispatch!(Level::baseline(), simd => region.enclose(simd, first, grid));
                 // Before and after the columns in doubt are decided.
                 for narrowed in [false, true] {
                     if narrowed {

@@ -118,38 +118,32 @@ enum Front {
     Before(f64),
 }
 
+/// The frame, its tests, and Y of a row.
+type Row<'a> = (&'a PreparedFrame<'a>, &'a DepthTests, f64);
+
 impl DepthTester {
     /// What a row shows in the columns of a span, from the left.
     pub(crate) fn test(
         &mut self,
-        frame: &PreparedFrame<'_>,
-        depth_tests: &DepthTests,
+        row: Row<'_>,
         visible: Visible,
-        y: f64,
         columns: Columns,
     ) -> impl Iterator<Item = (Columns, Shown)> {
         self.parts.clear();
-        self.add(frame, depth_tests, visible, y, columns);
+        self.add(row, visible, columns);
         self.parts.drain(..)
     }
 
-    fn add(
-        &mut self,
-        frame: &PreparedFrame<'_>,
-        depth_tests: &DepthTests,
-        visible: Visible,
-        y: f64,
-        columns: Columns,
-    ) {
+    fn add(&mut self, row: Row<'_>, visible: Visible, columns: Columns) {
         match visible {
             Visible::Only(shows) => self.push(columns, shows),
             Visible::DepthTest(test) => {
-                let test = depth_tests.test(test);
+                let test = row.1.test(test);
                 let first = self.near.len();
                 let indices = 0..test.1.len();
                 self.near
                     .extend(indices.map(|index| Near { index, lower: 0.0 }));
-                self.add_first(frame, (depth_tests, test), first, y, columns);
+                self.add_first(row, test, first, columns);
                 self.near.truncate(first);
             }
         }
@@ -158,17 +152,15 @@ impl DepthTester {
     /// Settles columns by a test among the solids in `near` from number `first` on.
     fn add_first(
         &mut self,
-        frame: &PreparedFrame<'_>,
-        tests: (&DepthTests, (&DepthTest, &[Candidate])),
+        row: Row<'_>,
+        test: (&DepthTest, &[Candidate]),
         first: usize,
-        y: f64,
         columns: Columns,
     ) {
-        let (depth_tests, test) = tests;
         let end = self.near.len();
-        let before = match front(frame, test, &mut self.near[first..], y, columns) {
+        let before = match front(row, test, &mut self.near[first..], columns) {
             Front::Candidate(index) => return self.push(columns, test.1[index].shown),
-            Front::Rest => return self.add(frame, depth_tests, test.0.rest, y, columns),
+            Front::Rest => return self.add(row, test.0.rest, columns),
             Front::Before(depth) => depth,
         };
         let Some(halves) = halves(columns) else {
@@ -181,7 +173,7 @@ impl DepthTester {
             }
         }
         for half in halves {
-            self.add_first(frame, tests, end, y, half);
+            self.add_first(row, test, end, half);
         }
         self.near.truncate(end);
     }
@@ -196,10 +188,9 @@ impl DepthTester {
 
 /// What is in front in all these columns, among the solids `near`. Updates their lower bounds.
 fn front(
-    frame: &PreparedFrame<'_>,
+    (frame, _, y): Row<'_>,
     (test, candidates): (&DepthTest, &[Candidate]),
     near: &mut [Near],
-    y: f64,
     columns: Columns,
 ) -> Front {
     let solids = frame.solids(test.mirrored);
