@@ -75,6 +75,7 @@ mod edges;
 mod grid;
 mod low;
 mod prepare;
+mod row_edges;
 mod shade;
 #[cfg(test)]
 mod tests;

@@ -121,7 +121,7 @@ pub(crate) struct ActiveEdges {
 impl ActiveEdges {
     /// Prepares for rows of a frame.
     pub(crate) fn begin(&mut self, table: &EdgeTable<'_>, grid: Grid) {
-        let count = table.kinds.len();
+        let count = table.regions.kinds.len();
         self.first = None;
         self.band_edges.clear();
         self.band_edges.resize(count, BandEdges::None);
@@ -131,7 +131,7 @@ impl ActiveEdges {
         self.size = grid.size;
         self.is_changed.clear();
         self.is_changed.resize(count, false);
-        self.coverage.clear(table);
+        self.coverage.clear(&table.regions);
         self.edges.clear();
         self.forget();
     }
@@ -283,7 +283,7 @@ impl ActiveEdges {
         for gap in 0..self.gaps.len() {
             let to = self.sorted_columns[gap][row];
             if self.gaps[gap] == Packed::UNRESOLVED && from < to {
-                self.coverage.look(table);
+                self.coverage.look(&table.regions);
                 self.gaps[gap] = Packed::new(resolve(&self.coverage));
             }
             from = to;
@@ -338,7 +338,7 @@ impl ActiveEdges {
         first: u32,
         grid: Grid,
     ) -> BandEdges {
-        let mut band = table.regions[region].cross(simd, first, grid);
+        let mut band = table.regions.all[region].cross(simd, first, grid);
         if band.filled == 0 {
             return BandEdges::None;
         }

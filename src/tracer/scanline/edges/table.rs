@@ -41,13 +41,18 @@ pub(crate) struct EdgeTableBuilder<'f> {
     receivers: u32,
 }
 
-/// The regions of a frame.
-pub(crate) struct EdgeTable<'f> {
-    pub(crate) regions: &'f [Region<'f>],
+/// Regions, and what each of them is.
+pub(crate) struct Regions<'f> {
+    pub(crate) all: &'f [Region<'f>],
     /// By the number of the region.
     pub(crate) kinds: &'f [RegionKind],
     /// How many receivers of shadows there are.
     pub(crate) receivers: usize,
+}
+
+/// The regions of a frame.
+pub(crate) struct EdgeTable<'f> {
+    pub(crate) regions: Regions<'f>,
     /// For 64 regions at a time, the half-open range of the rows of each: where it begins, and
     /// where it ends. Missing regions and low ones have no rows.
     rows: &'f [[[u32; 64]; 2]],
@@ -131,6 +136,15 @@ impl<'f> EdgeTableBuilder<'f> {
         receiver
     }
 
+    /// The regions that were added.
+    pub(crate) fn regions(self) -> Regions<'f> {
+        Regions {
+            all: self.regions.into_bump_slice(),
+            kinds: self.kinds.into_bump_slice(),
+            receivers: self.receivers as usize,
+        }
+    }
+
     /// Low regions are told apart if there are at least `low_from`.
     pub(crate) fn build(self, low_from: usize, grid: Grid) -> EdgeTable<'f> {
         let is_low = |region: &Region<'_>| is_low(region.rows());
@@ -160,9 +174,7 @@ impl<'f> EdgeTableBuilder<'f> {
             rows: collect(self.arena, rows),
             low,
             low_bands,
-            receivers: self.receivers as usize,
-            regions: self.regions.into_bump_slice(),
-            kinds: self.kinds.into_bump_slice(),
+            regions: self.regions(),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! the present column. Few columns are looked at: only there their solids and shadows are told
 //! apart.
 
-use crate::tracer::scanline::edges::table::{EdgeTable, Receiver, RegionKind, SolidIndex};
+use crate::tracer::scanline::edges::table::{Receiver, RegionKind, Regions, SolidIndex};
 
 /// How a region covers the present column.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -83,13 +83,14 @@ pub(crate) struct Coverage {
 }
 
 impl Coverage {
-    /// Goes to the left of all regions of a frame.
-    pub(crate) fn clear(&mut self, table: &EdgeTable<'_>) {
+    /// Goes to the left of these regions.
+    pub(crate) fn clear(&mut self, regions: &Regions<'_>) {
         self.covers.clear();
-        self.covers.resize(table.kinds.len(), Cover::Not);
+        self.covers.resize(regions.kinds.len(), Cover::Not);
         self.covering.clear();
         self.shadows.clear();
-        self.shadows.resize(table.receivers, CoverCount::default());
+        self.shadows
+            .resize(regions.receivers, CoverCount::default());
         self.receivers.clear();
     }
 
@@ -106,7 +107,7 @@ impl Coverage {
     }
 
     /// Tells solids and shadows of the present column apart.
-    pub(crate) fn look(&mut self, table: &EdgeTable<'_>) {
+    pub(crate) fn look(&mut self, regions: &Regions<'_>) {
         self.direct.clear();
         self.mirrored.clear();
         self.surface = CoverCount::default();
@@ -115,7 +116,7 @@ impl Coverage {
         }
         for &region in &self.covering {
             let cover = self.covers[region];
-            match table.kinds[region] {
+            match regions.kinds[region] {
                 RegionKind::Surface => self.surface.add(cover),
                 RegionKind::Shadow(receiver) => {
                     self.shadows[receiver.0 as usize].add(cover);

@@ -1,0 +1,94 @@
+//! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
+//! from one row to the next.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::tracer::scanline::active::Edge;
+use crate::tracer::scanline::edges::table::Regions;
+use crate::tracer::scanline::grid::{Grid, ROWS};
+
+/// An edge of a region after its column in a row, in one word, which sorts faster than two.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct EdgeAt(u64);
+
+impl EdgeAt {
+    fn new(column: u32, edge: Edge) -> EdgeAt {
+        EdgeAt(u64::from(column) << 32 | u64::from(edge.0))
+    }
+
+    pub(crate) fn column(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    pub(crate) fn edge(self) -> Edge {
+        Edge(self.0 as u32)
+    }
+}
+
+/// The edges of some regions in each row of a band.
+#[derive(Default)]
+pub(crate) struct RowEdges {
+    /// A bit for each row: whether any of the regions reaches it.
+    reached: u64,
+    rows: [Vec<EdgeAt>; ROWS],
+}
+
+impl RowEdges {
+    /// Crosses the regions of these numbers with the band of rows from `first` on.
+    pub(crate) fn cross(
+        &mut self,
+        regions: &Regions<'_>,
+        numbers: impl Iterator<Item = u32>,
+        first: u32,
+        level: Level,
+        grid: Grid,
+    ) {
+        self.rows.iter_mut().for_each(Vec::clear);
+        self.reached = 0;
+        dispatch!(level, simd => self.cross_all(simd, regions, numbers, first, grid));
+    }
+
+    #[inline(always)]
+    fn cross_all<S: Simd>(
+        &mut self,
+        simd: S,
+        regions: &Regions<'_>,
+        numbers: impl Iterator<Item = u32>,
+        first: u32,
+        grid: Grid,
+    ) {
+        for region in numbers {
+            let region = region as usize;
+            let band = regions.all[region].cross(simd, first, grid);
+            let ([a, d], [b, c]) = (band.possible, band.certain);
+            let mut filled = band.filled;
+            self.reached |= filled;
+            while filled != 0 {
+                let row = filled.trailing_zeros() as usize;
+                filled &= filled - 1;
+                let columns = [a[row], b[row], c[row], d[row]];
+                let is_certain = (a[row], d[row]) == (b[row], c[row]);
+                for edge in Edge::of(region, is_certain) {
+                    self.rows[row].push(EdgeAt::new(columns[edge.kind()], edge));
+                }
+            }
+        }
+    }
+
+    /// Whether any of the regions reaches a row of the band.
+    pub(crate) fn reach(&self, row: u32) -> bool {
+        self.reached >> (row as usize % ROWS) & 1 == 1
+    }
+
+    /// The number of edges in a row of the band.
+    pub(crate) fn count(&self, row: u32) -> usize {
+        self.rows[row as usize % ROWS].len()
+    }
+
+    /// The edges in a row of the band, from the left.
+    pub(crate) fn sorted(&mut self, row: u32) -> &[EdgeAt] {
+        let edges = &mut self.rows[row as usize % ROWS];
+        edges.sort_unstable();
+        edges
+    }
+}
