@@ -34,6 +34,9 @@
 //!   mostly nothing but the columns of the edges has changed.
 //! - `low.rs` lays the regions of few rows over those gaps: a crowd of them would leave nothing in
 //!   order from one row to the next.
+//! - `faces.rs` divides what a row shows of a tetrahedron on which many shadows may fall: its
+//!   creases and shadows are no active edges. They are prepared when a row first shows the solid
+//!   (`late_faces`), since most solids of such a crowd are hidden.
 //! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
 //!   by a separating plane (`separation`) or by a depth test (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
@@ -72,6 +75,7 @@
 
 mod active;
 mod edges;
+mod faces;
 mod grid;
 mod low;
 mod prepare;
@@ -84,6 +88,7 @@ mod write;
 
 use std::ops::Range;
 
+use bumpalo::Bump;
 use fearless_simd::Level;
 
 use super::arena::Arena;
@@ -93,10 +98,13 @@ use super::pixel::{left_half, quadrant};
 use super::progress::Progress;
 use super::tally::Tally;
 use active::ActiveEdges;
+use faces::FaceSplitter;
 use grid::Columns;
 pub(super) use grid::ROWS;
 use low::LowEdges;
+use prepare::appearance::late_faces;
 use prepare::frame::{Crowd, PreparedFrame};
+use prepare::late_faces::{LateFaces, LateSource};
 use prepare::solids::Appearance;
 pub(super) use shade::policy::Precision;
 use shade::span::SpanShader;
@@ -112,6 +120,7 @@ use write::row_writer::RowWriter;
 const CROWD: Crowd = Crowd {
     cull_from: 4,
     low_from: 256,
+    late_from: 4,
 };
 
 /// A frame, ready to be traced row by row.
@@ -119,6 +128,7 @@ pub(super) struct RowTracer<'f, P> {
     /// Decides the pixels that rows leave in doubt.
     pixels: &'f P,
     frame: PreparedFrame<'f>,
+    late: LateSource<'f>,
     level: Level,
     precision: Precision,
 }
@@ -129,14 +139,17 @@ pub(super) struct Scratch {
     active: ActiveEdges,
     low: LowEdges,
     depth_tests: DepthTests,
+    depth_tester: DepthTester,
     painters: Painters,
 }
 
-/// What finds out what the columns of a span show, where one fill is not enough.
+/// What writes columns that are not filled with one paint.
 #[derive(Default)]
 struct Painters {
-    depth_tester: DepthTester,
     shader: SpanShader,
+    face_splitter: FaceSplitter,
+    /// Memory that is free between late faces.
+    spare: Bump,
 }
 
 impl<'f, P: RowPixels> RowTracer<'f, P> {
@@ -154,9 +167,16 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         arena: &'f Arena,
     ) -> Self {
         let color = |decision| pixels.color(decision);
+        let picture = pixels.bounded();
+        let frame = PreparedFrame::new(picture, &color, crowd, level, &arena.setup);
         RowTracer {
             pixels,
-            frame: PreparedFrame::new(pixels.bounded(), &color, crowd, level, &arena.setup),
+            late: LateSource {
+                picture,
+                grid: frame.grid,
+                threads: &arena.threads,
+            },
+            frame,
             level,
             precision,
         }
@@ -170,6 +190,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         scratch.low.begin(&self.frame.edge_table);
         scratch.depth_tests.clear();
         scratch.painters.shader.begin(self.frame.shaded_spheres);
+        scratch.painters.face_splitter.begin(self.frame.late_faces);
     }
 
     /// Traces neighbouring rows into their samples and, if given, decisions. Returns what
@@ -237,6 +258,7 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             active,
             low,
             depth_tests,
+            depth_tester,
             painters,
         } = scratch;
         if depth_tests.is_full() {
@@ -249,7 +271,8 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         if table.has_low() && low.enter(writer.row, table, self.level, frame.grid) {
             return self.trace_overlaid(writer, scratch);
         }
-        self.show(writer, active.spans(writer.row), depth_tests, painters);
+        let depths = (depth_tester, &*depth_tests);
+        self.show(writer, active.spans(writer.row), depths, painters);
     }
 
     /// Traces a row that low regions reach.
@@ -261,7 +284,8 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
         low.overlay(writer.row, &frame.edge_table, &scratch.active, resolve);
         writer.tally.edges += low.edge_count(writer.row) as u64;
-        self.show(writer, low.spans(), depth_tests, &mut scratch.painters);
+        let depths = (&mut scratch.depth_tester, &*depth_tests);
+        self.show(writer, low.spans(), depths, &mut scratch.painters);
         // No other row can use the tests of gaps with low regions.
         depth_tests.truncate(tests);
     }
@@ -271,11 +295,8 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         &'r self,
         writer: &mut RowWriter<'r>,
         spans: impl ExactSizeIterator<Item = (u32, Visible)>,
-        depth_tests: &DepthTests,
-        Painters {
-            depth_tester,
-            shader,
-        }: &mut Painters,
+        (depth_tester, depth_tests): (&mut DepthTester, &DepthTests),
+        painters: &mut Painters,
     ) {
         writer.tally.spans += spans.len() as u64;
         let mut from = 0;
@@ -285,11 +306,11 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
             match visible {
                 // The span has no columns in this row, but may have some in the next.
                 _ if columns.0 == columns.1 => {}
-                Visible::Only(shows) => self.write(writer, columns, shows, shader),
+                Visible::Only(shows) => self.write(writer, columns, shows, painters),
                 Visible::DepthTest(_) => {
                     let row = (&self.frame, depth_tests, writer.y);
                     for (columns, shows) in depth_tester.test(row, visible, columns) {
-                        self.write(writer, columns, shows, shader);
+                        self.write(writer, columns, shows, painters);
                     }
                 }
             }
@@ -302,17 +323,45 @@ impl<'f, P: RowPixels> RowTracer<'f, P> {
         writer: &mut RowWriter<'r>,
         columns: Columns,
         shows: Shown,
-        shader: &mut SpanShader,
+        painters: &mut Painters,
     ) {
         match shows {
             Shown::Paint(paint) => writer.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
                 if let Appearance::Sphere(shaded) = self.frame.solids(mirrored).appearance(solid) {
                     let in_shadow = &self.frame.paints[shaded.in_shadow];
+                    let shader = &mut painters.shader;
                     shader.shade(writer, columns, shaded, in_shadow, self.pixels);
                 }
             }
+            Shown::Faces { mirrored, solid } => {
+                if let Appearance::LateFaces(late) = self.frame.solids(mirrored).appearance(solid) {
+                    self.write_faces(writer, columns, mirrored, late, painters);
+                }
+            }
             Shown::InDoubt => writer.decide(columns.0..columns.1, self.pixels),
+        }
+    }
+
+    /// Writes columns that show a solid with late faces.
+    #[inline(never)]
+    fn write_faces<'r>(
+        &'r self,
+        writer: &mut RowWriter<'r>,
+        columns: Columns,
+        mirrored: bool,
+        late: &'r LateFaces<'f>,
+        painters: &mut Painters,
+    ) {
+        let color = |decision| self.pixels.color(decision);
+        let faces = late_faces(late, &self.late, mirrored, &color, &mut painters.spare);
+        let (row, level, grid) = (writer.row, self.level, self.frame.grid);
+        let splitter = &mut painters.face_splitter;
+        for (columns, shows) in splitter.split((late.number, faces), row, columns, level, grid) {
+            match shows {
+                Shown::Paint(paint) => writer.fill(columns, &faces.paints[paint]),
+                _ => writer.decide(columns.0..columns.1, self.pixels),
+            }
         }
     }
 }

@@ -144,6 +144,7 @@ impl ActiveEdges {
     }
 
     /// Goes to a row. `resolve` finds what is visible where these regions cover a column.
+    #[inline]
     pub(crate) fn enter(
         &mut self,
         row: u32,

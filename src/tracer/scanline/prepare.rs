@@ -5,6 +5,8 @@ pub(super) mod builder;
 pub(super) mod culling;
 pub(super) mod depth;
 pub(super) mod frame;
+pub(super) mod front_faces;
+pub(super) mod late_faces;
 pub(super) mod outline;
 pub(super) mod shadows;
 pub(super) mod solids;

@@ -5,12 +5,13 @@
 
 use fearless_simd::Level;
 
+use super::grid::Columns;
 use super::prepare::frame::Crowd;
 use super::prepare::solids::Appearance;
 use super::visibility::coverage::Coverage;
 use super::visibility::depth_test::DepthTests;
 use super::visibility::visible::{Shown, Visible};
-use super::{DepthTester, Precision, RowTracer, Scratch, visible};
+use super::{DepthTester, Painters, Precision, RowTracer, Scratch, late_faces, visible};
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
@@ -73,10 +74,11 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
             let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
             let name = text.lines().next().unwrap_or("built-in");
             // Every frame is one of a crowd, or none.
-            for (cull_from, low_from) in [(0, 0), (u64::MAX, usize::MAX)] {
+            for from in [0, u64::MAX] {
                 let crowd = Crowd {
-                    cull_from,
-                    low_from,
+                    cull_from: from,
+                    low_from: from as usize,
+                    late_from: from,
                 };
                 let (precision, level) = (Precision::Certified, Level::baseline());
                 let tracer = RowTracer::with_crowd(crowd, &ladder, precision, level, &arena);
@@ -112,6 +114,7 @@ fn words(visible: Visible, tests: &DepthTests) -> String {
     let shown = |shown: Shown| match shown {
         Shown::Paint(paint) => format!("paint {}", paint.0),
         Shown::Sphere { mirrored, solid } => format!("sphere {} {mirrored}", solid.0),
+        Shown::Faces { mirrored, solid } => format!("faces {} {mirrored}", solid.0),
         Shown::InDoubt => "in doubt".to_owned(),
     };
     match visible {
@@ -146,6 +149,55 @@ pub(super) fn lit(decision: Decision) -> Decision {
         Decision::Mirrored(seen) => Decision::Mirrored(lit(seen)),
         other => other,
     }
+}
+
+/// What is known of the pixels of some columns before they are shaded.
+#[derive(Clone, Copy)]
+enum Claim {
+    None,
+    Shows(Decision),
+    /// This decision, or the same in shadow.
+    ShowsSphere(Decision),
+}
+
+/// What `shown` claims of the pixels of these columns, with faces told apart.
+fn claims<P: RowPixels>(
+    tracer: &RowTracer<'_, P>,
+    row: u32,
+    columns: Columns,
+    shown: Shown,
+    painters: &mut Painters,
+) -> Vec<(Columns, Claim)> {
+    let frame = &tracer.frame;
+    let appearance = |mirrored, solid| frame.solids(mirrored).appearance(solid);
+    let claim = match shown {
+        Shown::InDoubt => Claim::None,
+        Shown::Paint(paint) => Claim::Shows(frame.paints[paint].decision),
+        Shown::Sphere { mirrored, solid } => {
+            let sphere = match appearance(mirrored, solid) {
+                Appearance::Sphere(sphere) => Some(sphere),
+                _ => None,
+            };
+            Claim::ShowsSphere(sphere.unwrap().in_light)
+        }
+        Shown::Faces { mirrored, solid } => {
+            let late = match appearance(mirrored, solid) {
+                Appearance::LateFaces(late) => Some(*late),
+                _ => None,
+            };
+            let late = late.unwrap();
+            let color = |decision| tracer.pixels.color(decision);
+            let faces = late_faces(late, &tracer.late, mirrored, &color, &mut painters.spare);
+            let (numbered, splitter) = ((late.number, faces), &mut painters.face_splitter);
+            let parts = splitter.split(numbered, row, columns, tracer.level, frame.grid);
+            let claims = parts.map(|(columns, shown)| match shown {
+                Shown::Paint(paint) => (columns, Claim::Shows(faces.paints[paint].decision)),
+                _ => (columns, Claim::None),
+            });
+            return claims.collect();
+        }
+    };
+    vec![(columns, claim)]
 }
 
 #[test]
@@ -193,30 +245,23 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             for (to, visible) in spans(tracer, row, &mut scratch) {
                 let mut depth_tester = DepthTester::default();
                 let (frame, tests) = (&tracer.frame, &scratch.depth_tests);
-                for ((first, end), shown) in
-                    depth_tester.test((frame, tests, y), visible, (from, to))
-                {
-                    for column in first..end {
-                        let ((decision, _), _) = tracer.pixels.pixel(column, row);
-                        let is_right = match (shown, decision) {
-                            (Shown::InDoubt, _) => {
-                                in_doubt += 1;
-                                continue;
+                let parts = depth_tester.test((frame, tests, y), visible, (from, to));
+                for (columns, shown) in parts {
+                    let painters = &mut scratch.painters;
+                    for ((first, end), claim) in claims(tracer, row, columns, shown, painters) {
+                        for column in first..end {
+                            let ((decision, _), _) = tracer.pixels.pixel(column, row);
+                            let is_right = match claim {
+                                Claim::None => true,
+                                Claim::Shows(claimed) => claimed == decision,
+                                Claim::ShowsSphere(in_light) => in_light == lit(decision),
+                            };
+                            assert!(is_right, "{name}, ({column}, {row}): {decision:?}");
+                            match claim {
+                                Claim::None => in_doubt += 1,
+                                _ => certain += 1,
                             }
-                            (Shown::Paint(paint), _) => {
-                                tracer.frame.paints[paint].decision == decision
-                            }
-                            (
-                                Shown::Sphere { mirrored, solid },
-                                Decision::Solid(_) | Decision::Mirrored(_),
-                            ) => {
-                                let appearance = tracer.frame.solids(mirrored).appearance(solid);
-                                matches!(appearance, Appearance::Sphere(sphere) if sphere.in_light == lit(decision))
-                            }
-                            (Shown::Sphere { .. }, _) => false,
-                        };
-                        assert!(is_right, "{name}, ({column}, {row}): {decision:?}");
-                        certain += 1;
+                        }
                     }
                 }
                 from = to;

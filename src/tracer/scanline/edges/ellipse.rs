@@ -15,6 +15,7 @@ use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, number_at};
 
 /// The pixels where (X − `middle`)² + m² ≤ `squared_radius`, with a middle and an m that are linear
 /// functions of Y: an ellipse, with a horizontal chord in every row.
+#[derive(Clone, Copy)]
 pub(crate) struct Ellipse {
     /// The middle of the chord at Y = 0, and how it moves with Y.
     middle: (f64, f64),

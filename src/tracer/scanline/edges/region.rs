@@ -11,6 +11,7 @@
 //! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
 //! the bound need no test. The columns within it, rarely one, are tested one by one.
 
+use bumpalo_herd::Member;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -40,6 +41,16 @@ impl<'f> Region<'f> {
             clip: &[],
             ellipse,
             rows,
+        }
+    }
+
+    /// The same region in other memory, clipped to `clip`.
+    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>, clip: &'k [HalfPlane]) -> Region<'k> {
+        Region {
+            half_planes: memory.alloc_slice_copy(self.half_planes),
+            clip,
+            ellipse: self.ellipse,
+            rows: self.rows,
         }
     }
 

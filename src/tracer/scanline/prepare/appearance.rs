@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::Bounded;
@@ -14,12 +15,14 @@ use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::{RegionKind, SolidIndex};
+use crate::tracer::scanline::edges::table::{RegionKind, Regions, SolidIndex};
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::screen_plane;
-use crate::tracer::scanline::prepare::outline::{Outlined, Outlines};
+use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces, Pair};
+use crate::tracer::scanline::prepare::late_faces::{LateFaces, LateSource, SplitFaces};
+use crate::tracer::scanline::prepare::outline::{Outlined, OutlinedFaces, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
-use crate::tracer::scanline::prepare::solids::{Appearance, FrontFace, Pair, PreparedSolids};
+use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::SphereConstants;
@@ -30,8 +33,8 @@ use crate::tracer::view::{TetrahedronInView, View};
 /// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
 /// the scene, or the one in the mirror.
 pub(crate) fn prepare_solids<'f>(
-    picture: &Picture<'_, Bounded>,
-    view: &View<'_, Bounded>,
+    picture: &Picture<'f, Bounded>,
+    view: &View<'f, Bounded>,
     outlines: Outlines<'f>,
     parts: &mut Builder<'f, '_>,
 ) -> PreparedSolids<'f> {
@@ -39,10 +42,19 @@ pub(crate) fn prepare_solids<'f>(
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let appearances = Appearances::new(picture, view, mirrored);
     let sides = collect(arena, outlines.all.iter().map(|solid| solid.side));
+    let is_late = appearances.has_shadows
+        && outlines.face_shadows(picture.scene, parts.grid) >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
     for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
-        let appearance = appearances.of(&solid, parts);
+        let appearance = match view.solid(solid.number) {
+            Solid::Tetrahedron(t) if is_late => {
+                parts.late_faces += 1;
+                let number = parts.late_faces - 1;
+                Appearance::LateFaces(arena.alloc(LateFaces::new(number, solid.faces(), t)))
+            }
+            _ => appearances.of(&solid, parts),
+        };
         let kind = if mirrored {
             RegionKind::Mirrored(index)
         } else {
@@ -59,6 +71,39 @@ pub(crate) fn prepare_solids<'f>(
         depths: depths.into_bump_slice(),
         separation: Separation::new(view, numbers, arena),
     }
+}
+
+/// Late faces, of the view in the mirror or of the direct one; they are made now if they are asked
+/// for first. `color` tells the colour of a decision, `spare` is memory that is free afterwards.
+pub(crate) fn late_faces<'l, 'f>(
+    late: &'l LateFaces<'f>,
+    source: &LateSource<'f>,
+    mirrored: bool,
+    color: &dyn Fn(Decision) -> [f32; 3],
+    spare: &mut Bump,
+) -> &'l SplitFaces<'f> {
+    late.made.get_or_init(|| {
+        spare.reset();
+        let view = source.picture.view(mirrored);
+        let appearances = Appearances::new(source.picture, view, mirrored);
+        let mut parts = Builder::new(source.grid, color, u64::MAX, spare);
+        let faces = appearances.front_faces(&late.outlined, late.tetrahedron, &mut parts);
+        let memory = source.threads.get();
+        let regions = parts.edge_table.regions();
+        let kept = |number: usize| regions.all[number].kept_in(&memory, late.outlined.outline);
+        SplitFaces {
+            front_faces: FrontFaces {
+                all: memory.alloc_slice_copy(faces.all),
+                pairs: memory.alloc_slice_copy(faces.pairs),
+            },
+            regions: Regions {
+                all: memory.alloc_slice_fill_with(regions.all.len(), kept),
+                kinds: memory.alloc_slice_copy(regions.kinds),
+                receivers: regions.receivers,
+            },
+            paints: parts.paints.all().kept_in(&memory),
+        }
+    })
 }
 
 /// Makes the appearances of a view's solids.
@@ -93,7 +138,9 @@ impl<'p, 's> Appearances<'p, 's> {
             }
             // The outline of a sphere is an ellipse.
             (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
-            (Solid::Tetrahedron(t), _) => self.front_faces(solid, t, parts),
+            (Solid::Tetrahedron(t), _) => {
+                Appearance::FrontFaces(self.front_faces(&solid.faces(), t, parts))
+            }
         }
     }
 
@@ -151,13 +198,14 @@ impl<'p, 's> Appearances<'p, 's> {
         }))
     }
 
+    /// The front faces of a tetrahedron, whose regions and paints are added.
     fn front_faces<'f>(
         &self,
-        solid: &Outlined<'f>,
+        solid: &OutlinedFaces<'f>,
         t: &TetrahedronInView<Bounded>,
         parts: &mut Builder<'f, '_>,
-    ) -> Appearance<'f> {
-        let (arena, grid, rows) = (parts.arena, parts.grid, solid.outline.rows());
+    ) -> FrontFaces<'f> {
+        let (arena, grid) = (parts.arena, parts.grid);
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
         for (face, plane) in solid.front_faces {
             let turned_away = self.has_shadows && t.solid.turned_away(*face);
@@ -175,7 +223,7 @@ impl<'p, 's> Appearances<'p, 's> {
                 lit: if turned_away { in_shadow } else { paint(false) },
                 in_shadow,
                 turned_away,
-                shadows: parts.edge_table.add_receiver(shadows, rows),
+                shadows: parts.edge_table.add_receiver(shadows, solid.rows),
             });
         }
         let index = |face: usize| {
@@ -186,26 +234,27 @@ impl<'p, 's> Appearances<'p, 's> {
         };
         let screen = screen_plane(grid);
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
-        let outline = solid.outline.half_planes();
         let pairs = t.solid.entered_pairs(&t.eye_edges);
         let pairs = pairs.filter_map(|((i, j), first)| {
             let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
             let crease = Region::new(crease, None, grid)
-                .within(rows)
-                .clipped(outline);
+                .within(solid.rows)
+                .clipped(solid.outline);
             Some(Pair {
                 front_faces: (index(i)?, index(j)?),
                 crease: parts.edge_table.add(crease, RegionKind::Crease),
             })
         });
-        let pairs = collect(arena, pairs);
-        Appearance::FrontFaces(front_faces.into_bump_slice(), pairs)
+        FrontFaces {
+            pairs: collect(arena, pairs),
+            all: front_faces.into_bump_slice(),
+        }
     }
 
     /// The shadows that may fall on a front face.
     fn shadows_on_face<'f>(
         &self,
-        solid: &Outlined<'f>,
+        solid: &OutlinedFaces<'f>,
         (face, plane): (usize, &PixelPlane),
         parts: &Builder<'f, '_>,
     ) -> Growing<'f, Region<'f>> {
@@ -215,8 +264,7 @@ impl<'p, 's> Appearances<'p, 's> {
         let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
-        let outline = solid.outline.half_planes();
-        let clipped = |shadow: Region<'f>| shadow.clipped(outline);
+        let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);
         let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(clipped));
         shadows

@@ -2,6 +2,7 @@
 
 use bumpalo::Bump;
 
+use crate::tracer::decision::Decision;
 use crate::tracer::scanline::edges::table::EdgeTableBuilder;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::write::paint::Paints;
@@ -14,4 +15,28 @@ pub(crate) struct Builder<'f, 'c> {
     pub(crate) paints: Paints<'f, 'c>,
     /// How many spheres are shaded so far.
     pub(crate) shaded_spheres: usize,
+    /// The mean number of shadows on front faces in a row from which on faces are late.
+    pub(crate) late_from: u64,
+    /// How many solids have late faces so far.
+    pub(crate) late_faces: usize,
+}
+
+impl<'f, 'c> Builder<'f, 'c> {
+    /// No parts yet. `color` tells the colour of a decision.
+    pub(crate) fn new(
+        grid: Grid,
+        color: &'c dyn Fn(Decision) -> [f32; 3],
+        late_from: u64,
+        arena: &'f Bump,
+    ) -> Self {
+        Builder {
+            grid,
+            arena,
+            edge_table: EdgeTableBuilder::new(arena),
+            paints: Paints::new(color, arena),
+            shaded_spheres: 0,
+            late_from,
+            late_faces: 0,
+        }
+    }
 }

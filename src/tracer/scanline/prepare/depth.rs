@@ -119,6 +119,18 @@ impl Depth<'_> {
         }
     }
 
+    /// The front face that is seen in all of a rectangle, if the bounds tell: the one entered last.
+    pub(crate) fn front_face(&self, rectangle: Rectangle) -> Option<usize> {
+        let Depth::FrontFaces(front_faces) = self else {
+            return None;
+        };
+        let bounds = |face: usize| front_faces[face].bounds(rectangle);
+        (0..front_faces.len()).find(|&face| {
+            let mut others = (0..front_faces.len()).filter(|other| *other != face);
+            others.all(|other| bounds(other).1 < bounds(face).0)
+        })
+    }
+
     /// The sphere, or the plane of a front face: solids of one support have the same depth there.
     pub(crate) fn support(&self, front_face: Option<usize>) -> Option<Support> {
         match self {

@@ -7,7 +7,7 @@ use crate::number::Bounded;
 use crate::stage::Stage;
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::table::{EdgeTable, EdgeTableBuilder};
+use crate::tracer::scanline::edges::table::EdgeTable;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::appearance::prepare_solids;
 use crate::tracer::scanline::prepare::builder::Builder;
@@ -15,7 +15,7 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
 use crate::tracer::scanline::prepare::solids::PreparedSolids;
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
-use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber, Paints};
+use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber};
 
 /// From which crowds on a frame is prepared in other ways than from a few solids.
 #[derive(Clone, Copy)]
@@ -24,6 +24,8 @@ pub(crate) struct Crowd {
     pub(crate) cull_from: u64,
     /// The number of regions of few rows from which on they are no active edges.
     pub(crate) low_from: usize,
+    /// The mean number of shadows on front faces in a row from which on faces are late.
+    pub(crate) late_from: u64,
 }
 
 /// A frame, prepared for its rows.
@@ -37,6 +39,8 @@ pub(crate) struct PreparedFrame<'f> {
     direct: PreparedSolids<'f>,
     /// How many spheres are shaded.
     pub(crate) shaded_spheres: usize,
+    /// How many solids have late faces.
+    pub(crate) late_faces: usize,
     /// The paints of Code 2-1, in the stage that shows it.
     pub(crate) quadrants: Option<[PaintNumber; 4]>,
 }
@@ -44,20 +48,14 @@ pub(crate) struct PreparedFrame<'f> {
 impl<'f> PreparedFrame<'f> {
     /// `color` tells the colour of a decision.
     pub(crate) fn new(
-        picture: &Picture<'_, Bounded>,
+        picture: &Picture<'f, Bounded>,
         color: &dyn Fn(Decision) -> [f32; 3],
         crowd: Crowd,
         level: Level,
         arena: &'f Bump,
     ) -> Self {
         let grid = Grid::new(picture.size);
-        let mut parts = Builder {
-            grid,
-            arena,
-            edge_table: EdgeTableBuilder::new(arena),
-            paints: Paints::new(color, arena),
-            shaded_spheres: 0,
-        };
+        let mut parts = Builder::new(grid, color, crowd.late_from, arena);
         let background = parts.paints.add(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
         let is_crowded = outlines.depth_complexity(grid) >= crowd.cull_from;
@@ -80,6 +78,7 @@ impl<'f> PreparedFrame<'f> {
             surface,
             direct,
             shaded_spheres: parts.shaded_spheres,
+            late_faces: parts.late_faces,
             quadrants,
         }
     }

@@ -3,7 +3,7 @@
 use bumpalo::Bump;
 
 use crate::number::Bounded;
-use crate::scene::{Side, Solid};
+use crate::scene::{Scene, Side, Solid};
 use crate::stage::Stage;
 use crate::tracer::arena::{bucketed, collect};
 use crate::tracer::extent::Extent;
@@ -34,6 +34,29 @@ pub(crate) struct Outlines<'f> {
     pub(crate) all: bumpalo::collections::Vec<'f, Outlined<'f>>,
     /// The sum of the areas of their extents, in pixels.
     area: u64,
+}
+
+/// What the front faces of a tetrahedron are prepared from.
+#[derive(Clone, Copy)]
+pub(crate) struct OutlinedFaces<'f> {
+    /// The number of the solid in the scene.
+    pub(crate) number: usize,
+    /// The half-planes of the outline, and its rows.
+    pub(crate) outline: &'f [HalfPlane],
+    pub(crate) rows: (u32, u32),
+    pub(crate) front_faces: &'f [(usize, PixelPlane)],
+}
+
+impl<'f> Outlined<'f> {
+    /// What the front faces are prepared from.
+    pub(crate) fn faces(&self) -> OutlinedFaces<'f> {
+        OutlinedFaces {
+            number: self.number,
+            outline: self.outline.half_planes(),
+            rows: self.outline.rows(),
+            front_faces: self.front_faces,
+        }
+    }
 }
 
 impl<'f> Outlines<'f> {
@@ -127,6 +150,18 @@ impl<'f> Outlines<'f> {
     /// The mean number of extents that hold a pixel.
     pub(crate) fn depth_complexity(&self, grid: Grid) -> u64 {
         self.area / (u64::from(grid.size) * u64::from(grid.size))
+    }
+
+    /// The mean number of shadows on front faces that a row may meet.
+    pub(crate) fn face_shadows(&self, scene: &Scene, grid: Grid) -> u64 {
+        let casters = &scene.facts().casters;
+        let of_solid = |solid: &Outlined<'_>| {
+            let (from, to) = solid.outline.rows();
+            let faces = solid.front_faces.iter();
+            let shadows = faces.map(|(face, _)| casters.on(solid.number, Some(*face)).len() as u64);
+            u64::from(to - from) * shadows.sum::<u64>()
+        };
+        self.all.iter().map(of_solid).sum::<u64>() / u64::from(grid.size)
     }
 
     /// Leaves out the solids that others hide in all tiles.

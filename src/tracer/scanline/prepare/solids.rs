@@ -1,8 +1,10 @@
 //! The solids of a frame, prepared for its rows: seen directly, or in the mirror.
 
 use crate::scene::Side;
-use crate::tracer::scanline::edges::table::{Receiver, SolidIndex};
+use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::prepare::depth::Depth;
+use crate::tracer::scanline::prepare::front_faces::FrontFaces;
+use crate::tracer::scanline::prepare::late_faces::LateFaces;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::scanline::write::paint::PaintNumber;
@@ -40,26 +42,8 @@ pub(crate) enum Appearance<'f> {
     Flat(PaintNumber),
     /// The pixels of a sphere are shaded.
     Sphere(&'f ShadedSphere<'f>),
-    /// Each front face of a tetrahedron has its paints. The pairs tell which one is seen.
-    FrontFaces(&'f [FrontFace], &'f [Pair]),
-}
-
-/// A face of a tetrahedron that eye rays enter.
-pub(crate) struct FrontFace {
-    /// The paint in the light.
-    pub(crate) lit: PaintNumber,
-    /// The paint in shadow.
-    pub(crate) in_shadow: PaintNumber,
-    /// Whether all of it is turned away from the light, and so in shadow.
-    pub(crate) turned_away: bool,
-    /// The receiver of the shadows on the face.
-    pub(crate) shadows: Receiver,
-}
-
-/// Two front faces that share an edge.
-pub(crate) struct Pair {
-    /// Their indices; the first has the lower face number.
-    pub(crate) front_faces: (usize, usize),
-    /// The number of the region in which eye rays enter the first one last.
-    pub(crate) crease: usize,
+    /// Each front face of a tetrahedron has its paints.
+    FrontFaces(FrontFaces<'f>),
+    /// The same, but prepared when the solid is first seen.
+    LateFaces(&'f LateFaces<'f>),
 }

@@ -38,8 +38,8 @@ pub(crate) struct PreparedSurface<'f> {
 impl<'f> PreparedSurface<'f> {
     /// `tiles` tells where solids hide the surface, if the frame is culled.
     pub(crate) fn new(
-        picture: &Picture<'_, Bounded>,
-        surface: &SeenSurface<'_, Bounded>,
+        picture: &Picture<'f, Bounded>,
+        surface: &SeenSurface<'f, Bounded>,
         tiles: Option<&Tiles<'f>>,
         parts: &mut Builder<'f, '_>,
     ) -> Self {

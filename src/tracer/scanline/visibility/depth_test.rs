@@ -119,13 +119,13 @@ enum Front {
 }
 
 /// The frame, its tests, and Y of a row.
-type Row<'a> = (&'a PreparedFrame<'a>, &'a DepthTests, f64);
+type Row<'a, 'f> = (&'a PreparedFrame<'f>, &'a DepthTests, f64);
 
 impl DepthTester {
     /// What a row shows in the columns of a span, from the left.
     pub(crate) fn test(
         &mut self,
-        row: Row<'_>,
+        row: Row<'_, '_>,
         visible: Visible,
         columns: Columns,
     ) -> impl Iterator<Item = (Columns, Shown)> {
@@ -134,7 +134,7 @@ impl DepthTester {
         self.parts.drain(..)
     }
 
-    fn add(&mut self, row: Row<'_>, visible: Visible, columns: Columns) {
+    fn add(&mut self, row: Row<'_, '_>, visible: Visible, columns: Columns) {
         match visible {
             Visible::Only(shows) => self.push(columns, shows),
             Visible::DepthTest(test) => {
@@ -152,7 +152,7 @@ impl DepthTester {
     /// Settles columns by a test among the solids in `near` from number `first` on.
     fn add_first(
         &mut self,
-        row: Row<'_>,
+        row: Row<'_, '_>,
         test: (&DepthTest, &[Candidate]),
         first: usize,
         columns: Columns,
@@ -188,7 +188,7 @@ impl DepthTester {
 
 /// What is in front in all these columns, among the solids `near`. Updates their lower bounds.
 fn front(
-    (frame, _, y): Row<'_>,
+    (frame, _, y): Row<'_, '_>,
     (test, candidates): (&DepthTest, &[Candidate]),
     near: &mut [Near],
     columns: Columns,
@@ -208,13 +208,17 @@ fn front(
     for Near { index, lower: kept } in near {
         let other = &candidates[*index];
         let depth = solids.depth(other.solid);
-        let support = depth.support(other.front_face);
+        let front_face = |candidate: &Candidate| match candidate.shown {
+            Shown::Faces { solid, .. } => solids.depth(solid).front_face(interval),
+            _ => candidate.front_face,
+        };
+        let support = depth.support(front_face(other));
         let (front, (begins, ends_first)) = &candidate;
         // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
             && let first = &candidates[*first]
             && support.is_some()
-            && solids.depth(first.solid).support(first.front_face) == support
+            && solids.depth(first.solid).support(front_face(first)) == support
         {
             *kept = *begins;
             continue;

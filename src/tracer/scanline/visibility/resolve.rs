@@ -3,7 +3,8 @@
 use crate::scene::Side;
 use crate::tracer::scanline::edges::table::SolidIndex;
 use crate::tracer::scanline::prepare::frame::PreparedFrame;
-use crate::tracer::scanline::prepare::solids::{Appearance, FrontFace, PreparedSolids};
+use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces};
+use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::depth_test::{Candidate, DepthTests};
@@ -94,18 +95,33 @@ fn candidate(solids: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage
             };
             (None, shown)
         }
-        Appearance::FrontFaces(front_faces, pairs) => {
-            let pairs = pairs.iter().map(|pair| (pair.front_faces, pair.crease));
-            match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
-                Ok(last) => (Some(last), front_face_in(&front_faces[last], coverage)),
-                Err(()) => (None, Shown::InDoubt),
-            }
+        Appearance::FrontFaces(front_faces) => front_face(front_faces, coverage),
+        Appearance::LateFaces(_) => {
+            let shown = Shown::Faces {
+                mirrored: solids.mirrored,
+                solid,
+            };
+            (None, shown)
         }
     };
     Candidate {
         solid,
         front_face,
         shown,
+    }
+}
+
+/// The index of the front face that a gap sees of a tetrahedron, if no crease is in doubt, and what
+/// the gap shows of it.
+pub(crate) fn front_face(
+    front_faces: &FrontFaces<'_>,
+    coverage: &Coverage,
+) -> (Option<usize>, Shown) {
+    let pairs = front_faces.pairs.iter();
+    let pairs = pairs.map(|pair| (pair.front_faces, pair.crease));
+    match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
+        Ok(last) => (Some(last), front_face_in(&front_faces.all[last], coverage)),
+        Err(()) => (None, Shown::InDoubt),
     }
 }
 

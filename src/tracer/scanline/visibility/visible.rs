@@ -12,6 +12,11 @@ pub(crate) enum Shown {
         mirrored: bool,
         solid: SolidIndex,
     },
+    /// A tetrahedron whose faces are told apart in each row.
+    Faces {
+        mirrored: bool,
+        solid: SolidIndex,
+    },
     /// Every pixel is decided by itself.
     InDoubt,
 }
@@ -41,7 +46,8 @@ impl Packed {
             Visible::Only(Shown::InDoubt) => (1, 0),
             Visible::Only(Shown::Paint(PaintNumber(number))) => (2, number),
             Visible::Only(Shown::Sphere { mirrored, solid }) => (3 + u64::from(mirrored), solid.0),
-            Visible::DepthTest(number) => (5, number),
+            Visible::Only(Shown::Faces { mirrored, solid }) => (5 + u64::from(mirrored), solid.0),
+            Visible::DepthTest(number) => (7, number),
         };
         Packed(kind << 32 | u64::from(number))
     }
@@ -63,7 +69,11 @@ impl Packed {
                 mirrored: kind == 4,
                 solid: SolidIndex(number),
             }),
-            5 => Visible::DepthTest(number),
+            kind @ (5 | 6) => Visible::Only(Shown::Faces {
+                mirrored: kind == 6,
+                solid: SolidIndex(number),
+            }),
+            7 => Visible::DepthTest(number),
             _ => Visible::IN_DOUBT,
         }
     }

@@ -2,12 +2,14 @@
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
+use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4};
 
 use crate::tracer::decision::Decision;
 
 /// A decision that many pixels show, and its colour as it lies in memory.
+#[derive(Clone, Copy)]
 pub(crate) struct Paint {
     pub(crate) decision: Decision,
     /// The three channels again and again: enough for a vector that begins with any of them.
@@ -79,6 +81,13 @@ impl std::ops::Index<PaintNumber> for AllPaints<'_> {
 
     fn index(&self, number: PaintNumber) -> &Paint {
         &self.0[number.0 as usize]
+    }
+}
+
+impl AllPaints<'_> {
+    /// The same in other memory.
+    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>) -> AllPaints<'k> {
+        AllPaints(memory.alloc_slice_copy(self.0))
     }
 }
 

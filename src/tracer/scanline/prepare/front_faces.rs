@@ -1,0 +1,32 @@
+//! The front faces of a tetrahedron, prepared for rows.
+
+use crate::tracer::scanline::edges::table::Receiver;
+use crate::tracer::scanline::write::paint::PaintNumber;
+
+/// The front faces of a tetrahedron, and the pairs that tell which one is seen.
+pub(crate) struct FrontFaces<'f> {
+    pub(crate) all: &'f [FrontFace],
+    pub(crate) pairs: &'f [Pair],
+}
+
+/// A face of a tetrahedron that eye rays enter.
+#[derive(Clone, Copy)]
+pub(crate) struct FrontFace {
+    /// The paint in the light.
+    pub(crate) lit: PaintNumber,
+    /// The paint in shadow.
+    pub(crate) in_shadow: PaintNumber,
+    /// Whether all of it is turned away from the light, and so in shadow.
+    pub(crate) turned_away: bool,
+    /// The receiver of the shadows on the face.
+    pub(crate) shadows: Receiver,
+}
+
+/// Two front faces that share an edge.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    /// Their indices; the first has the lower face number.
+    pub(crate) front_faces: (usize, usize),
+    /// The number of the region in which eye rays enter the first one last.
+    pub(crate) crease: usize,
+}
