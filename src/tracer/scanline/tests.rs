@@ -46,12 +46,26 @@ radius = 0.0625
 color = [0.5, 0.25, 0.5]
 ";
 
-const SCENES: [&str; 8] = [
+/// Two tetrahedra with a face in one plane. The first turns another face to the eye, too, and the
+/// crease between its faces lies before the second.
+const CREASE_ON_A_SHARED_PLANE: &str = "# A crease on a shared plane
+surface = { height = -0.5, half_width = 0.75 }
+[[tetrahedron]]
+vertices = [[0.5, 0.5, -0.25], [-0.5, -0.25, 0.25], [0.25, -0.25, 0.25], [0.0, 0.5, 0.25]]
+color = [0.5, 0.5, 0.5]
+[[tetrahedron]]
+vertices = [[0.0, -0.25, 0.25], [0.625, -0.125, 0.25], [0.25, 0.5, 0.25], [0.25, 0.125, -0.25]]
+color = [0.5, 0.25, 0.5]
+";
+
+const SCENES: [&str; 10] = [
     "",
     include_str!("../../../tests/scenes/crossing_spheres.toml"),
     include_str!("../../../tests/scenes/crossing_tetrahedra.toml"),
     include_str!("../../../tests/scenes/crowd.toml"),
     include_str!("../../../tests/scenes/light_from_below.toml"),
+    include_str!("../../../tests/scenes/skew_shared_plane.toml"),
+    CREASE_ON_A_SHARED_PLANE,
     include_str!("../../../tests/scenes/spheres_in_the_floor.toml"),
     SHADOW_IN_SHADOW,
     BELOW_THE_MIRROR,
@@ -268,7 +282,7 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
             }
             assert_eq!(from, size, "{name}, row {row}");
         }
-        // Spans that leave everything in doubt would pass, too.
-        assert!(certain > in_doubt, "{name}: {certain}, {in_doubt}");
+        // Spans that leave much in doubt would pass, too.
+        assert!(certain > 100 * in_doubt, "{name}: {certain}, {in_doubt}");
     });
 }
