@@ -8,6 +8,7 @@ use super::{Sphere, Tetrahedron};
 pub(super) const MARGIN: f64 = 1.0 + 1e-12;
 
 /// A bounding ball of a solid.
+#[derive(Clone, Debug)]
 pub(super) struct BoundingBall {
     pub(super) center: DVec3,
     pub(super) radius: f64,
@@ -40,28 +41,61 @@ pub(super) fn bounding_balls(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> 
         .collect()
 }
 
-/// Calls `pair` with the numbers of any two balls whose projections onto a line along `direction`,
-/// of length 1, may overlap.
-pub(super) fn each_overlapping_pair(
-    balls: &[BoundingBall],
-    direction: DVec3,
-    mut pair: impl FnMut(usize, usize),
-) {
-    let mut projections: Vec<(f64, f64, usize)> = balls
-        .iter()
-        .enumerate()
-        .map(|(number, ball)| {
+/// The projections of balls onto a line, which tell which balls can overlap.
+#[derive(Clone, Debug)]
+pub(super) struct Projections {
+    /// Where each projection begins and ends, and the number of its ball, in the order in which
+    /// they begin.
+    sorted: Vec<(f64, f64, usize)>,
+    /// By the number of the ball, the index in `sorted`.
+    places: Vec<usize>,
+    /// The length of the longest.
+    longest: f64,
+}
+
+impl Projections {
+    /// The projections along `direction`, of length 1.
+    pub(super) fn new(balls: &[BoundingBall], direction: DVec3) -> Self {
+        let projection = |(number, ball): (usize, &BoundingBall)| {
             let slack = ball.center.abs().element_sum() * (MARGIN - 1.0);
             let half = ball.radius * MARGIN + slack;
             let middle = ball.center.dot(direction);
             (middle - half, middle + half, number)
-        })
-        .collect();
-    projections.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    for (index, &(_, end, number)) in projections.iter().enumerate() {
-        let meets = |other: &&(f64, f64, usize)| other.0 <= end;
-        for &(_, _, other) in projections[index + 1..].iter().take_while(meets) {
-            pair(number, other);
+        };
+        let mut sorted: Vec<_> = balls.iter().enumerate().map(projection).collect();
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut places = vec![0; balls.len()];
+        for (place, &(_, _, number)) in sorted.iter().enumerate() {
+            places[number] = place;
         }
+        let lengths = sorted.iter().map(|(begin, end, _)| end - begin);
+        Projections {
+            longest: lengths.fold(0.0, f64::max) * MARGIN,
+            sorted,
+            places,
+        }
+    }
+
+    /// Calls `pair` with the numbers of any two balls whose projections may overlap.
+    pub(super) fn each_overlapping_pair(&self, mut pair: impl FnMut(usize, usize)) {
+        for (index, &(_, end, number)) in self.sorted.iter().enumerate() {
+            let meets = |other: &&(f64, f64, usize)| other.0 <= end;
+            for &(_, _, other) in self.sorted[index + 1..].iter().take_while(meets) {
+                pair(number, other);
+            }
+        }
+    }
+
+    /// The numbers of the other balls whose projections may overlap that of this one.
+    pub(super) fn overlapping(&self, number: usize) -> impl Iterator<Item = usize> {
+        let place = self.places[number];
+        let (begin, end, _) = self.sorted[place];
+        let (before, after) = (&self.sorted[..place], &self.sorted[place + 1..]);
+        // Projections of balls that overlap do so by their slacks, which are more than rounding.
+        let begins_late = move |other: &&(f64, f64, usize)| other.0 + self.longest >= begin;
+        let before = before.iter().rev().take_while(begins_late);
+        let before = before.filter(move |other| other.1 >= begin);
+        let after = after.iter().take_while(move |other| other.0 <= end);
+        before.chain(after).map(|other| other.2)
     }
 }

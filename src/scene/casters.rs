@@ -2,23 +2,36 @@
 //! that. `surface_casters.rs` tells which can cast one on the surface.
 
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::bounding_ball::{BoundingBall, MARGIN, bounding_balls, each_overlapping_pair};
+use super::bounding_ball::{BoundingBall, MARGIN, Projections, bounding_balls};
 use super::{EDGES, FACES, Solid, Sphere, Tetrahedron};
 
 /// The casters of each sphere and each face: the solids that may stand between a point of it and
-/// the light.
+/// the light. In a crowd, those of most are never asked for.
 ///
 /// Enclosed solids are neither casters nor receivers: their shadows lie within the shadows of the
 /// solids that enclose them, and no ray meets them first. Faces turned away from the light have no
 /// casters: they are dark anyway.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Casters {
-    on_spheres: Vec<Vec<u16>>,
-    on_faces: Vec<[Vec<u16>; 4]>,
+    /// The way to the light, of length 1.
+    l: DVec3,
+    /// By the number of the solid.
+    enclosed: Vec<bool>,
+    balls: Vec<BoundingBall>,
+    /// The projections of `balls` onto a line across the light.
+    projections: Projections,
+    /// By the number of the tetrahedron.
+    prisms: Vec<Prisms>,
+    on_spheres: Vec<OnceLock<Vec<u16>>>,
+    on_faces: Vec<[OnceLock<Vec<u16>>; 4]>,
 }
+
+/// The casters of so many solids are found at once, so that no frame has to find any.
+const FEW: usize = 256;
 
 impl Casters {
     /// `facing_light` tells the sign of n·l for each face.
@@ -29,80 +42,82 @@ impl Casters {
         enclosed: &[bool],
         facing_light: &[[Ordering; 4]],
     ) -> Self {
-        let bounds = bounding_balls(spheres, tetrahedra);
         let l = to_light.normalize();
-        let prisms: Vec<Prisms> = tetrahedra
-            .iter()
-            .zip(facing_light)
-            .map(|(tetrahedron, facing)| Prisms::new(tetrahedron, facing, l))
-            .collect();
-        let balls = |solid| match Solid::numbered(solid, spheres, tetrahedra) {
-            Solid::Sphere(sphere) => Balls {
-                centers: std::slice::from_ref(&sphere.center),
-                radius: sphere.radius,
-            },
-            Solid::Tetrahedron(tetrahedron) => Balls::points(&tetrahedron.vertices),
-        };
-        let mut casters = Casters {
-            on_spheres: vec![Vec::new(); spheres.len()],
+        let balls = bounding_balls(spheres, tetrahedra);
+        let prisms = tetrahedra.iter().zip(facing_light);
+        let casters = Casters {
+            l,
+            enclosed: enclosed.to_vec(),
+            projections: Projections::new(&balls, l.any_orthonormal_vector()),
+            prisms: prisms
+                .map(|(tetrahedron, facing)| Prisms::new(tetrahedron, facing, l))
+                .collect(),
+            on_spheres: vec![OnceLock::new(); spheres.len()],
             on_faces: vec![Default::default(); tetrahedra.len()],
+            balls,
         };
-        each_overlapping_pair(&bounds, l.any_orthonormal_vector(), |a, b| {
-            if enclosed[a] || enclosed[b] {
-                return;
-            }
-            let BoundingBall { center, radius } = bounds[a];
-            let other = &bounds[b];
-            let between = other.center - center;
-            let slack = bounds[a].slack(other);
-            let touching = (other.radius + radius) * MARGIN + slack;
-            if between.cross(l).length_squared() > touching * touching * MARGIN {
-                return;
-            }
-            let ahead = between.dot(l);
-            let pairs = [(a, b, ahead >= -touching), (b, a, ahead <= touching)];
-            for (receiver, caster, may) in pairs {
-                if !may {
-                    continue;
-                }
-                let misses = |receiver: Balls<'_>| match Solid::index(caster, spheres.len()) {
-                    Solid::Sphere(_) => false,
-                    Solid::Tetrahedron(caster) => prisms[caster].shadow.misses(receiver),
-                };
-                match Solid::index(receiver, spheres.len()) {
-                    Solid::Sphere(_) if misses(balls(receiver)) => {}
-                    Solid::Sphere(sphere) => casters.on_spheres[sphere].push(caster as u16),
-                    Solid::Tetrahedron(tetrahedron) => {
-                        let lists = casters.on_faces[tetrahedron].iter_mut();
-                        for (k, (list, light)) in lists.zip(&prisms[tetrahedron].light).enumerate()
-                        {
-                            let Some(light) = light else { continue };
-                            let face = face(&tetrahedra[tetrahedron], k);
-                            if !light.misses(balls(caster)) && !misses(Balls::points(&face)) {
-                                list.push(caster as u16);
-                            }
-                        }
-                    }
+        if casters.balls.len() <= FEW {
+            for solid in 0..casters.balls.len() {
+                casters.on(solid, None);
+                for face in 0..4 {
+                    casters.on(solid, Some(face));
                 }
             }
-        });
-        let on_faces = casters.on_faces.iter_mut().flatten();
-        for list in casters.on_spheres.iter_mut().chain(on_faces) {
-            list.sort_unstable();
         }
         casters
     }
 
-    /// The casters of a sphere, or of a face of a tetrahedron.
+    /// The casters of a sphere, or of a face of a tetrahedron, in the scene's order.
     pub(crate) fn on(&self, solid: usize, face: Option<usize>) -> &[u16] {
         match (
             Solid::numbered(solid, &self.on_spheres, &self.on_faces),
             face,
         ) {
-            (Solid::Sphere(casters), _) => casters,
-            (Solid::Tetrahedron(casters), Some(face)) => &casters[face],
+            (Solid::Sphere(casters), _) => casters.get_or_init(|| {
+                let ball = &self.balls[solid];
+                self.find(solid, None, Balls::of(ball))
+            }),
+            (Solid::Tetrahedron(casters), Some(face)) => casters[face].get_or_init(|| {
+                let prisms = &self.prisms[solid - self.on_spheres.len()];
+                let vertices = FACES[face].map(|vertex| prisms.vertices[vertex]);
+                match &prisms.light[face] {
+                    Some(light) => self.find(solid, Some(light), Balls::points(&vertices)),
+                    None => Vec::new(),
+                }
+            }),
             (Solid::Tetrahedron(_), None) => &[],
         }
+    }
+
+    /// Finds the casters of a sphere, or of a face with the prism `light` on it.
+    fn find(&self, receiver: usize, light: Option<&Prism>, of_receiver: Balls<'_>) -> Vec<u16> {
+        if self.enclosed[receiver] {
+            return Vec::new();
+        }
+        let ball = &self.balls[receiver];
+        let is_caster = |&caster: &usize| {
+            let other = &self.balls[caster];
+            let between = other.center - ball.center;
+            let slack = ball.slack(other);
+            let touching = (other.radius + ball.radius) * MARGIN + slack;
+            if self.enclosed[caster]
+                || between.cross(self.l).length_squared() > touching * touching * MARGIN
+                || between.dot(self.l) < -touching
+            {
+                return false;
+            }
+            let misses = |balls| light.is_some_and(|light| light.misses(balls));
+            match Solid::numbered(caster, &self.on_spheres, &self.prisms) {
+                Solid::Sphere(_) => !misses(Balls::of(other)),
+                Solid::Tetrahedron(prisms) => {
+                    !misses(Balls::points(&prisms.vertices)) && !prisms.shadow.misses(of_receiver)
+                }
+            }
+        };
+        let casters = self.projections.overlapping(receiver).filter(is_caster);
+        let mut casters: Vec<u16> = casters.map(|caster| caster as u16).collect();
+        casters.sort_unstable();
+        casters
     }
 }
 
@@ -114,6 +129,13 @@ struct Balls<'s> {
 }
 
 impl<'s> Balls<'s> {
+    fn of(ball: &'s BoundingBall) -> Self {
+        Balls {
+            centers: std::slice::from_ref(&ball.center),
+            radius: ball.radius,
+        }
+    }
+
     fn points(centers: &'s [DVec3]) -> Self {
         Balls {
             centers,
@@ -128,7 +150,9 @@ fn face(tetrahedron: &Tetrahedron, k: usize) -> [DVec3; 3] {
 }
 
 /// The prisms of a tetrahedron along the light.
+#[derive(Clone, Debug)]
 struct Prisms {
+    vertices: [DVec3; 4],
     /// For each face that is turned to the light: what stands on the face toward the light. Its
     /// casters reach into it.
     light: [Option<Prism>; 4],
@@ -170,6 +194,7 @@ impl Prisms {
         });
         let shadow = lit.map(own).chain(silhouette);
         Prisms {
+            vertices: v,
             light,
             shadow: Prism(shadow.flatten().collect()),
         }
@@ -177,6 +202,7 @@ impl Prisms {
 }
 
 /// An intersection of half-spaces.
+#[derive(Clone, Debug)]
 struct Prism(Vec<PrismPlane>);
 
 impl Prism {
@@ -187,6 +213,7 @@ impl Prism {
 }
 
 /// A plane of a prism.
+#[derive(Clone, Debug)]
 struct PrismPlane {
     at: DVec3,
     /// Out of the prism, of length `length`.

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 use dashu_ratio::Relaxed;
 use glam::DVec3;
 
-use super::bounding_ball::{MARGIN, bounding_balls, each_overlapping_pair};
+use super::bounding_ball::{MARGIN, Projections, bounding_balls};
 use super::rational::{Plane, dot, exact, minus, sign};
 use super::{FACES, Solid, Sphere, Tetrahedron};
 
@@ -20,7 +20,7 @@ pub(super) fn enclosed(spheres: &[Sphere], tetrahedra: &[Tetrahedron]) -> Vec<bo
     let balls = bounding_balls(spheres, tetrahedra);
     let solid = |number| Solid::numbered(number, spheres, tetrahedra);
     let mut enclosed = vec![false; balls.len()];
-    each_overlapping_pair(&balls, DVec3::X, |a, b| {
+    Projections::new(&balls, DVec3::X).each_overlapping_pair(|a, b| {
         for (inner, outer) in [(a, b), (b, a)] {
             let (small, large) = (&balls[inner], &balls[outer]);
             let slack = small.slack(large);

@@ -28,7 +28,7 @@ pub(super) fn orientation(vertices: [DVec3; 4]) -> Ordering {
 pub(crate) struct Support(u32);
 
 /// The facts of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Facts {
     /// The boundary of each sphere.
     pub(crate) spheres: Vec<Support>,

@@ -9,7 +9,7 @@ use super::{Sphere, Surface, Tetrahedron};
 const CELLS: usize = 32;
 
 /// The casters of the surface, for each of its cells.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct SurfaceCasters {
     half_width: f64,
     /// For each cell, the index of its first caster in `casters`; then the length of `casters`.

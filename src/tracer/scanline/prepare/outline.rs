@@ -17,6 +17,9 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
 use crate::tracer::view::{SolidKinds, View};
 
+/// Of more solids, shadows are not counted.
+const MANY: usize = 256;
+
 /// The outline of a solid, and its depth.
 pub(crate) struct Outlined<'f> {
     /// Its number in the scene.
@@ -152,8 +155,12 @@ impl<'f> Outlines<'f> {
         self.area / (u64::from(grid.size) * u64::from(grid.size))
     }
 
-    /// The mean number of shadows on front faces that a row may meet.
+    /// The mean number of shadows on front faces that a row may meet; of more than [`MANY`] solids,
+    /// whose casters are not all known, as many as there can be.
     pub(crate) fn face_shadows(&self, scene: &Scene, grid: Grid) -> u64 {
+        if self.all.len() > MANY {
+            return u64::MAX;
+        }
         let casters = &scene.facts().casters;
         let of_solid = |solid: &Outlined<'_>| {
             let (from, to) = solid.outline.rows();
