@@ -205,25 +205,30 @@ fn front(
     let rest = surface.filter(|_| test.surface).unwrap_or(nothing);
     let mut candidate = (Front::Rest, rest);
     let mut others_begin = f64::INFINITY;
+    let support = |candidate: &Candidate| {
+        let depth = solids.depth(candidate.solid);
+        let front_face = match candidate.shown {
+            Shown::Faces { .. } => depth.front_face(interval),
+            _ => candidate.front_face,
+        };
+        depth.support(front_face)
+    };
     for Near { index, lower: kept } in near {
         let other = &candidates[*index];
         let depth = solids.depth(other.solid);
-        let front_face = |candidate: &Candidate| match candidate.shown {
-            Shown::Faces { solid, .. } => solids.depth(solid).front_face(interval),
-            _ => candidate.front_face,
-        };
-        let support = depth.support(front_face(other));
+        let (lower, upper) = depth.bounds(other.front_face, interval);
         let (front, (begins, ends_first)) = &candidate;
         // Of two solids with one support, the first in the scene is seen.
         if let Front::Candidate(first) = front
-            && let first = &candidates[*first]
-            && support.is_some()
-            && solids.depth(first.solid).support(front_face(first)) == support
+            && lower <= *ends_first
+            && *begins <= upper
+            && let own = support(other)
+            && own.is_some()
+            && own == support(&candidates[*first])
         {
             *kept = *begins;
             continue;
         }
-        let (lower, upper) = depth.bounds(other.front_face, interval);
         *kept = lower;
         // Mirrored rays begin at the surface, and miss a solid that ends before.
         if let Some((from, to)) =
