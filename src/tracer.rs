@@ -6,7 +6,7 @@
 //!
 //! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show,
 //!   points and rays;
-//! - `view_space`, `view_transform`, `view_signs`, `view`: view space, into which the scene and its
+//! - `view_space`, `view_transform`, `view_signs`, `view_tetrahedra`, `view`: view space, into which the scene and its
 //!   mirror image are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
@@ -60,6 +60,7 @@ mod vector;
 mod view;
 mod view_signs;
 mod view_space;
+mod view_tetrahedra;
 mod view_transform;
 
 use std::ops::Range;

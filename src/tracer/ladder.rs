@@ -139,7 +139,7 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
     }
 }
 
-impl<R: Real<Doubt = Infallible> + Sync> RowPixels for Plain<'_, R> {
+impl<R: Real<Doubt = Infallible> + Send + Sync> RowPixels for Plain<'_, R> {
     fn bounded(&self) -> &Picture<'_, Bounded> {
         &self.bounded
     }
@@ -149,7 +149,7 @@ impl<R: Real<Doubt = Infallible> + Sync> RowPixels for Plain<'_, R> {
     }
 }
 
-impl<R: Real<Doubt = Infallible> + Sync> Pixels for Plain<'_, R> {
+impl<R: Real<Doubt = Infallible> + Send + Sync> Pixels for Plain<'_, R> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
         let Ok((decision, normal)) = self.picture.decide(column, row);
         ((decision, self.samples(decision, normal)), Rung::Hardware)
@@ -239,7 +239,14 @@ impl<'f> Ladder<'f> {
             return (answer, Rung::DoubleDouble);
         }
         let mut arbitrary = self.arbitrary().pop().unwrap_or_else(|| {
-            let (session, picture) = Session::begin(|| self.picture(&self.threads.get()));
+            let (session, picture) = Session::begin(|| {
+                let picture = self.picture::<Expression>(&self.threads.get());
+                // Expressions that a pixel makes are forgotten with the pixel.
+                for mirrored in [false, true] {
+                    picture.view(mirrored).tetrahedra.all().for_each(drop);
+                }
+                picture
+            });
             ArbitraryPicture { session, picture }
         });
         let Ok(answer) = arbitrary

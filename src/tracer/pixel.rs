@@ -107,7 +107,7 @@ impl<'f, R: Real> Picture<'f, R> {
         stage: Stage,
         transform: &ViewTransform<R>,
         size: u32,
-        signs: &FrameSigns<'_>,
+        signs: &FrameSigns<'f>,
         extents: &Extents<'f>,
         allocator: &impl SliceAllocator<'f>,
     ) -> Self {

@@ -13,10 +13,10 @@ use super::extent::ExtentsOfSolids;
 use super::line::{Hit, Line};
 use super::shading::{Shading, halfway};
 use super::sphere::Sphere;
-use super::tetrahedron::{EdgeFunctions, Tetrahedron};
 use super::vector::Vector;
 use super::view_signs::{Halfway, ViewSigns};
 use super::view_space::{eye_direction, reflect};
+use super::view_tetrahedra::{TetrahedraInView, TetrahedronInView};
 use super::view_transform::ViewTransform;
 use crate::number::{Real, any};
 use crate::scene::{Scene, Solid, Support};
@@ -27,15 +27,8 @@ pub(super) struct View<'f, R> {
     /// The extent of each solid: spheres, then tetrahedra.
     pub(super) extents: ExtentsOfSolids<'f>,
     pub(super) spheres: &'f [Sphere<R>],
-    pub(super) tetrahedra: &'f [TetrahedronInView<R>],
+    pub(super) tetrahedra: TetrahedraInView<'f, R>,
     pub(super) shading: Shading<R>,
-}
-
-/// A tetrahedron with its edge functions for eye rays and for rays to the light.
-pub(super) struct TetrahedronInView<R> {
-    pub(super) solid: Tetrahedron<R>,
-    pub(super) eye_edges: EdgeFunctions<R>,
-    pub(super) light_edges: EdgeFunctions<R>,
 }
 
 /// Which kinds of solids take part in a stage.
@@ -68,9 +61,9 @@ impl SolidKinds {
 impl<'f, R: Real> View<'f, R> {
     /// The scene itself, or in the mirror.
     pub(super) fn new(
-        scene: &Scene,
+        scene: &'f Scene,
         transform: &ViewTransform<R>,
-        signs: &ViewSigns<'_>,
+        signs: &ViewSigns<'f>,
         extents: ExtentsOfSolids<'f>,
         mirrored: bool,
         allocator: &impl SliceAllocator<'f>,
@@ -99,37 +92,33 @@ impl<'f, R: Real> View<'f, R> {
                     radius: R::exact(sphere.radius) * transform.scale,
                     support,
                 });
-        let tetrahedra = signs
-            .face_signs
-            .iter()
-            .enumerate()
-            .map(|(index, &face_signs)| {
-                let solid = transform.tetrahedron(scene, index, mirror_height);
-                let eye_edges = solid.edge_functions(&eye_direction(), face_signs);
-                let light_edges = solid.edge_functions(&to_light, solid.facing_light);
-                TetrahedronInView {
-                    solid,
-                    eye_edges,
-                    light_edges,
-                }
-            });
         View {
             extents,
             spheres: allocator.slice_of(spheres),
-            tetrahedra: allocator.slice_of(tetrahedra),
+            tetrahedra: TetrahedraInView::new(
+                scene,
+                transform,
+                mirror_height,
+                signs.face_signs,
+                to_light,
+                allocator,
+            ),
             shading: Shading::new(scene, to_light, halfway),
         }
     }
 
     /// The number of solids.
     pub(super) fn solid_count(&self) -> usize {
-        self.spheres.len() + self.tetrahedra.len()
+        self.spheres.len() + self.tetrahedra.count()
     }
 
     /// The solid of this number.
     #[inline]
     pub(super) fn solid(&self, number: usize) -> Solid<&'f Sphere<R>, &'f TetrahedronInView<R>> {
-        Solid::numbered(number, self.spheres, self.tetrahedra)
+        match Solid::index(number, self.spheres.len()) {
+            Solid::Sphere(index) => Solid::Sphere(&self.spheres[index]),
+            Solid::Tetrahedron(index) => Solid::Tetrahedron(self.tetrahedra.get(index)),
+        }
     }
 
     /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from`

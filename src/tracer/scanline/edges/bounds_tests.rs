@@ -112,7 +112,12 @@ fn check_tetrahedra(
     shares: &mut Shares,
 ) {
     let screen = screen_plane(grid);
-    for (t, exact) in bounded.view.tetrahedra.iter().zip(truth.view.tetrahedra) {
+    for (t, exact) in bounded
+        .view
+        .tetrahedra
+        .all()
+        .zip(truth.view.tetrahedra.all())
+    {
         let half_spaces = t
             .solid
             .met(&t.eye_edges)

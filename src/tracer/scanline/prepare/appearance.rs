@@ -28,7 +28,8 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::SphereConstants;
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
-use crate::tracer::view::{TetrahedronInView, View};
+use crate::tracer::view::View;
+use crate::tracer::view_tetrahedra::TetrahedronInView;
 
 /// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
 /// the scene, or the one in the mirror.

@@ -16,7 +16,7 @@ use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::write::paint::AllPaints;
-use crate::tracer::view::TetrahedronInView;
+use crate::tracer::view_tetrahedra::TetrahedronInView;
 
 /// The front faces of a tetrahedron, made when they are first asked for.
 pub(crate) struct LateFaces<'f> {

@@ -84,8 +84,8 @@ impl<'f> Outlines<'f> {
         // spheres with one support have the same rows.
         let bands = (grid.size as usize).div_ceil(ROWS);
         let count = view.solid_count();
-        let numbers = (0..count).filter(|number| kinds.hold(&view.solid(*number)));
-        let numbers = numbers.map(|number| match view.solid(number) {
+        let numbers = (0..count).filter(|number| kinds.hold(&picture.scene.solid(*number)));
+        let numbers = numbers.map(|number| match picture.scene.solid(number) {
             Solid::Sphere(_) => {
                 let (first, _) = view.extents.of(number).rows(grid.size);
                 (first as usize / ROWS, number)
@@ -94,7 +94,6 @@ impl<'f> Outlines<'f> {
         });
         let (numbers, _) = bucketed(arena, bands + 2, numbers);
         for &number in numbers {
-            let solid = view.solid(number);
             let (side, extent) = (facts.sides[number], view.extents.of(number));
             let (mut first, mut end) = extent.rows(grid.size);
             if let Some(within) = within {
@@ -113,7 +112,7 @@ impl<'f> Outlines<'f> {
             }
             outlines.area += area;
             let rows = (first, end);
-            outlines.all.push(match solid {
+            outlines.all.push(match view.solid(number) {
                 Solid::Sphere(sphere) => {
                     let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
                     Outlined {
