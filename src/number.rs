@@ -73,6 +73,22 @@ pub(crate) trait Real:
     fn squared(self) -> Self {
         self * self
     }
+
+    /// a₀b₀ + a₁b₁ + …, from the left to the right.
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [Self; N], b: [Self; N]) -> Self {
+        products_summed(a, b)
+    }
+}
+
+/// a₀b₀ + a₁b₁ + …, one operation after the other.
+#[inline]
+fn products_summed<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> R {
+    let mut sum = a[0] * b[0];
+    for i in 1..N {
+        sum = sum + a[i] * b[i];
+    }
+    sum
 }
 
 impl Real for f64 {

@@ -9,6 +9,8 @@
 //! - sum: E_a + E_b + |a + b − v|, where a + b − v is an f64 that TwoSum gives exactly (Knuth),
 //! - product: |a|E_b + |b|E_a + E_a E_b + u|v|, from AB = (a − α)(b − β); without u|v| where a and
 //!   b have at most 53 bits together,
+//! - sum of products, where any factor has an error: the errors of the products, and u|s| for each
+//!   partial sum s,
 //! - quotient: (E_a + |a/b|E_b)/|B| + u|v|, from A/B − a/b = ((A − a)b − a(B − b))/(Bb), with |B| ≥
 //!   |b| − E_b,
 //! - root: E_a/√a + u v, from |√A − √a| = |A − a|/(√A + √a), √A ≥ 0.
@@ -29,7 +31,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::double_double::DoubleDouble;
 use super::error_free::two_sum;
 use super::rounding::{ROUND_UP, U, UNDERFLOW};
-use super::{Doubt, Real, round_enclosure, sin_cos};
+use super::{Doubt, Real, products_summed, round_enclosure, sin_cos};
 
 /// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity
 /// or NaN says nothing.
@@ -234,6 +236,33 @@ impl Real for Bounded {
 
     fn or_better(self, known: DoubleDouble) -> Bounded {
         known.into()
+    }
+
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [Bounded; N], b: [Bounded; N]) -> Bounded {
+        let errors = (0..N).fold(0.0, |sum, i| sum + (a[i].error + b[i].error));
+        if errors == 0.0 {
+            // Products and sums may be exact, too.
+            return products_summed(a, b);
+        }
+        let product = |i: usize| {
+            let (a, b): (Bounded, Bounded) = (a[i], b[i]);
+            let value = a.value * b.value;
+            let carried = (a.value.abs() + a.error) * b.error + b.value.abs() * a.error;
+            (value, carried + U * value.abs())
+        };
+        let (mut value, mut error) = product(0);
+        for i in 1..N {
+            let (term, its_error) = product(i);
+            value += term;
+            error += its_error + U * value.abs();
+        }
+        // Without an error, each product has a factor that is known to be 0.
+        let lost = if error == 0.0 { 0.0 } else { UNDERFLOW };
+        Bounded {
+            value,
+            error: error * ROUND_UP + lost,
+        }
     }
 
     #[inline]

@@ -27,15 +27,16 @@ impl<R: Real> Vector<R> {
 
     #[inline]
     pub(crate) fn dot(self, other: Self) -> R {
-        self.x * other.x + self.y * other.y + self.z * other.z
+        R::sum_of_products([self.x, self.y, self.z], [other.x, other.y, other.z])
     }
 
     #[inline]
     pub(crate) fn cross(self, other: Self) -> Self {
+        let component = |a: [R; 2], b: [R; 2]| R::sum_of_products([a[0], -a[1]], [b[1], b[0]]);
         Vector::new(
-            self.y * other.z - self.z * other.y,
-            self.z * other.x - self.x * other.z,
-            self.x * other.y - self.y * other.x,
+            component([self.y, self.z], [other.y, other.z]),
+            component([self.z, self.x], [other.z, other.x]),
+            component([self.x, self.y], [other.x, other.y]),
         )
     }
 
