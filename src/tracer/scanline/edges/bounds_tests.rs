@@ -17,7 +17,7 @@ use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::scanline::prepare::depth::{Depth, Rectangle, face_plane, screen_plane};
+use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, Rectangle};
 use crate::tracer::scanline::prepare::surface_plane::{SurfaceDepth, surface_plane};
 
 const SIZE: u32 = 500;
@@ -111,7 +111,6 @@ fn check_tetrahedra(
     grid: Grid,
     shares: &mut Shares,
 ) {
-    let screen = screen_plane(grid);
     for (t, exact) in bounded
         .view
         .tetrahedra
@@ -123,7 +122,7 @@ fn check_tetrahedra(
             .met(&t.eye_edges)
             .zip(exact.solid.met(&exact.eye_edges));
         for (half_space, exact) in half_spaces {
-            let half_plane = HalfPlane::of(&half_space, &screen, grid);
+            let half_plane = HalfPlane::on_screen(&half_space, grid);
             for row in (0..SIZE).step_by(7) {
                 let y = grid.coordinate(row);
                 let all = [0.0, f64::from(SIZE)];
@@ -146,7 +145,7 @@ fn check_tetrahedra(
             }
         }
         for face in t.eye_edges.entered() {
-            let (_, depth) = face_plane(t.solid.inner_half_space(face), grid);
+            let depth = FaceDepth::new(&t.solid.inner_half_space(face), grid);
             let plane = exact.solid.inner_half_space(face);
             for (column, row) in (0..SIZE)
                 .step_by(41)

@@ -7,7 +7,7 @@ use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
-use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::view_space::{PIXEL, number_at};
 
@@ -98,6 +98,13 @@ impl HalfPlane {
             closed,
             border,
         }
+    }
+
+    /// The pixels whose eye rays begin in a half-space.
+    pub(crate) fn on_screen(half_space: &HalfSpace<Bounded>, grid: Grid) -> HalfPlane {
+        let n = half_space.normal;
+        let constant = n.dot(screen_origin(grid) - half_space.at);
+        HalfPlane::new(constant, n.x, n.y, half_space.closed, grid)
     }
 
     /// The pixels whose points on the plane lie in a half-space.

@@ -13,11 +13,10 @@ use crate::tracer::decision::{Decision, Seen};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
-use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{RegionKind, Regions, SolidIndex};
 use crate::tracer::scanline::prepare::builder::Builder;
-use crate::tracer::scanline::prepare::depth::screen_plane;
+use crate::tracer::scanline::prepare::depth::face_plane;
 use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces, Pair};
 use crate::tracer::scanline::prepare::late_faces::{LateFaces, LateSource, SplitFaces};
 use crate::tracer::scanline::prepare::outline::{Outlined, OutlinedFaces, Outlines};
@@ -208,10 +207,10 @@ impl<'p, 's> Appearances<'p, 's> {
     ) -> FrontFaces<'f> {
         let (arena, grid) = (parts.arena, parts.grid);
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
-        for (face, plane) in solid.front_faces {
+        for face in solid.front_faces {
             let turned_away = self.has_shadows && t.solid.turned_away(*face);
             let shadows = if self.has_shadows && !turned_away {
-                self.shadows_on_face(solid, (*face, plane), parts)
+                self.shadows_on_face(solid, *face, t, parts)
             } else {
                 Growing::new_in(arena)
             };
@@ -227,17 +226,11 @@ impl<'p, 's> Appearances<'p, 's> {
                 shadows: parts.edge_table.add_receiver(shadows, solid.rows),
             });
         }
-        let index = |face: usize| {
-            solid
-                .front_faces
-                .iter()
-                .position(|(other, _)| *other == face)
-        };
-        let screen = screen_plane(grid);
+        let index = |face: usize| solid.front_faces.iter().position(|other| *other == face);
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
         let pairs = t.solid.entered_pairs(&t.eye_edges);
         let pairs = pairs.filter_map(|((i, j), first)| {
-            let crease = arena.alloc([HalfPlane::of(&first, &screen, grid)]);
+            let crease = arena.alloc([HalfPlane::on_screen(&first, grid)]);
             let crease = Region::new(crease, None, grid)
                 .within(solid.rows)
                 .clipped(solid.outline);
@@ -256,17 +249,23 @@ impl<'p, 's> Appearances<'p, 's> {
     fn shadows_on_face<'f>(
         &self,
         solid: &OutlinedFaces<'f>,
-        (face, plane): (usize, &PixelPlane),
+        face: usize,
+        t: &TetrahedronInView<Bounded>,
         parts: &Builder<'f, '_>,
     ) -> Growing<'f, Region<'f>> {
         let (arena, grid) = (parts.arena, parts.grid);
         let casters = &self.picture.scene.facts().casters;
-        let casters = casters.on(solid.number, Some(face)).iter();
-        let solids = shadows_on(plane, self.view, casters.copied(), |_| false, grid, arena);
+        let casters = casters.on(solid.number, Some(face));
+        let mut shadows = Growing::new_in(arena);
+        if casters.is_empty() && !self.surface.reaches(solid.number) {
+            return shadows;
+        }
+        let plane = &face_plane(&t.solid.inner_half_space(face), grid);
+        let casters = casters.iter().copied();
+        let solids = shadows_on(plane, self.view, casters, |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);
-        let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(clipped));
         shadows
     }

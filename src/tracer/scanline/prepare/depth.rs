@@ -5,7 +5,7 @@ use crate::number::{Bounded, Real};
 use crate::scene::Support;
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
-use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, along_eye_ray, eye_direction};
@@ -66,6 +66,28 @@ fn magnitudes([a, b]: [f64; 2]) -> [f64; 2] {
 }
 
 impl FaceDepth {
+    /// The depth of the plane of a face.
+    pub(crate) fn new(face: &HalfSpace<Bounded>, grid: Grid) -> Self {
+        let depths = depths(face, grid);
+        let sum = |of: &dyn Fn(&Bounded) -> f64| -> f64 {
+            let factors = [1.0, grid.max, grid.max];
+            let terms = depths.iter().zip(factors);
+            terms.map(|(depth, factor)| of(depth) * factor).sum()
+        };
+        let (magnitudes, errors) = (
+            sum(&|depth| depth.value().abs()),
+            sum(&|depth| depth.error()),
+        );
+        let [constant, per_x, per_y] = depths.map(Bounded::value);
+        FaceDepth {
+            constant,
+            per_x,
+            per_y,
+            error: (errors + 8.0 * U * magnitudes) * INFLATION,
+            support: face.support,
+        }
+    }
+
     /// Bounds on the depth in a rectangle.
     pub(crate) fn bounds(&self, Rectangle { x, y }: Rectangle) -> (f64, f64) {
         // Rounding keeps order: the extremes of a linear function are at corners.
@@ -164,51 +186,25 @@ impl Depth<'_> {
     }
 }
 
-/// The screen, where eye rays begin.
-pub(crate) fn screen_plane(grid: Grid) -> PixelPlane {
-    let vector = |x, y, z| Vector::new(Bounded::exact(x), Bounded::exact(y), Bounded::exact(z));
-    PixelPlane {
-        origin: vector(0.0, 0.0, grid.max),
-        per_x: vector(1.0, 0.0, 0.0),
-        per_y: vector(0.0, 1.0, 0.0),
-        support: None,
-    }
+/// The parameter at which eye rays meet the plane of a face: at X = Y = 0, and its change per X and
+/// per Y.
+fn depths(face: &HalfSpace<Bounded>, grid: Grid) -> [Bounded; 3] {
+    // t = −n·(o − a)/(n·d), linear in o.
+    let n = face.normal;
+    let n_dot_d = n.dot(eye_direction::<Bounded>().vector);
+    let constant = n.dot(screen_origin(grid) - face.at);
+    [constant, n.x, n.y].map(|term| -(term / n_dot_d))
 }
 
-/// The points at which eye rays meet the plane of a face, and the parameters there.
-pub(crate) fn face_plane(face: HalfSpace<Bounded>, grid: Grid) -> (PixelPlane, FaceDepth) {
-    let eye = screen_plane(grid);
+/// The points of the plane of a face that eye rays enter.
+pub(crate) fn face_plane(face: &HalfSpace<Bounded>, grid: Grid) -> PixelPlane {
     let d = eye_direction::<Bounded>().vector;
-    // t = −n·(o − a)/(n·d), linear in o.
-    let n_dot_d = face.normal.dot(d);
-    let depth = |v: Vector<Bounded>| -(face.normal.dot(v) / n_dot_d);
-    let depths = [
-        depth(eye.origin - face.at),
-        depth(eye.per_x),
-        depth(eye.per_y),
-    ];
-    let sum = |of: &dyn Fn(&Bounded) -> f64| -> f64 {
-        let factors = [1.0, grid.max, grid.max];
-        let terms = depths.iter().zip(factors);
-        terms.map(|(depth, factor)| of(depth) * factor).sum()
-    };
-    let (magnitudes, errors) = (
-        sum(&|depth| depth.value().abs()),
-        sum(&|depth| depth.error()),
-    );
-    let plane = PixelPlane {
-        origin: eye.origin + d * depths[0],
-        per_x: eye.per_x + d * depths[1],
-        per_y: eye.per_y + d * depths[2],
+    let [zero, one] = [0.0, 1.0].map(Bounded::exact);
+    let depths = depths(face, grid);
+    PixelPlane {
+        origin: screen_origin(grid) + d * depths[0],
+        per_x: Vector::new(one, zero, zero) + d * depths[1],
+        per_y: Vector::new(zero, one, zero) + d * depths[2],
         support: face.support,
-    };
-    let [constant, per_x, per_y] = depths.map(Bounded::value);
-    let depth = FaceDepth {
-        constant,
-        per_x,
-        per_y,
-        error: (errors + 8.0 * U * magnitudes) * INFLATION,
-        support: face.support,
-    };
-    (plane, depth)
+    }
 }

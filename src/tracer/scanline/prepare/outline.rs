@@ -10,11 +10,10 @@ use crate::tracer::extent::Extent;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
-use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::prepare::culling::Tiles;
-use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, face_plane, screen_plane};
+use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth};
 use crate::tracer::view::{SolidKinds, View};
 
 /// Of more solids, shadows are not counted.
@@ -27,8 +26,8 @@ pub(crate) struct Outlined<'f> {
     pub(crate) side: Side,
     pub(crate) outline: Region<'f>,
     pub(crate) depth: Depth<'f>,
-    /// The front faces of a tetrahedron: their face numbers and their planes.
-    pub(crate) front_faces: &'f [(usize, PixelPlane)],
+    /// The face numbers of a tetrahedron's front faces.
+    pub(crate) front_faces: &'f [usize],
 }
 
 /// The solids that are seen directly, or in the mirror, within an extent of the screen.
@@ -47,7 +46,7 @@ pub(crate) struct OutlinedFaces<'f> {
     /// The half-planes of the outline, and its rows.
     pub(crate) outline: &'f [HalfPlane],
     pub(crate) rows: (u32, u32),
-    pub(crate) front_faces: &'f [(usize, PixelPlane)],
+    pub(crate) front_faces: &'f [usize],
 }
 
 impl<'f> Outlined<'f> {
@@ -124,23 +123,17 @@ impl<'f> Outlines<'f> {
                     }
                 }
                 Solid::Tetrahedron(t) => {
-                    let screen = screen_plane(grid);
                     let met = t.solid.met(&t.eye_edges);
-                    let met = met.map(|half_space| HalfPlane::of(&half_space, &screen, grid));
-                    let faces = t.eye_edges.entered();
-                    let front_faces =
-                        faces.map(|face| (face, face_plane(t.solid.inner_half_space(face), grid)));
-                    let mut depths = bumpalo::collections::Vec::<FaceDepth>::new_in(arena);
-                    let front_faces = front_faces.map(|(face, (plane, depth))| {
-                        depths.push(depth);
-                        (face, plane)
-                    });
-                    let front_faces = collect(arena, front_faces);
+                    let met = met.map(|half_space| HalfPlane::on_screen(&half_space, grid));
+                    let front_faces = collect(arena, t.eye_edges.entered());
+                    let faces = front_faces.iter();
+                    let depths =
+                        faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(*face), grid));
                     Outlined {
                         number,
                         side,
                         outline: Region::new(collect(arena, met), None, grid).within(rows),
-                        depth: Depth::FrontFaces(depths.into_bump_slice()),
+                        depth: Depth::FrontFaces(collect(arena, depths)),
                         front_faces,
                     }
                 }
@@ -164,7 +157,7 @@ impl<'f> Outlines<'f> {
         let of_solid = |solid: &Outlined<'_>| {
             let (from, to) = solid.outline.rows();
             let faces = solid.front_faces.iter();
-            let shadows = faces.map(|(face, _)| casters.on(solid.number, Some(*face)).len() as u64);
+            let shadows = faces.map(|face| casters.on(solid.number, Some(*face)).len() as u64);
             u64::from(to - from) * shadows.sum::<u64>()
         };
         self.all.iter().map(of_solid).sum::<u64>() / u64::from(grid.size)

@@ -62,6 +62,11 @@ impl<'p> SurfaceShadow<'p> {
         Some(surface.shadow(self.to_light, self.rise))
     }
 
+    /// Whether the shadow may reach a solid.
+    pub(crate) fn reaches(&self, solid: usize) -> bool {
+        self.on(solid).is_some()
+    }
+
     /// The surface as a caster on a sphere.
     pub(crate) fn on_sphere<'f>(
         &self,
