@@ -105,11 +105,12 @@ impl EdgeTable<'_> {
 }
 
 impl<'f> EdgeTableBuilder<'f> {
-    pub(crate) fn new(arena: &'f Bump) -> Self {
+    /// An empty one, with room for so many regions before it grows.
+    pub(crate) fn new(expected: usize, arena: &'f Bump) -> Self {
         EdgeTableBuilder {
             arena,
-            regions: Growing::new_in(arena),
-            kinds: Growing::new_in(arena),
+            regions: Growing::with_capacity_in(expected, arena),
+            kinds: Growing::with_capacity_in(expected, arena),
             receivers: 0,
         }
     }

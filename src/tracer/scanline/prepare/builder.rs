@@ -22,17 +22,18 @@ pub(crate) struct Builder<'f, 'c> {
 }
 
 impl<'f, 'c> Builder<'f, 'c> {
-    /// No parts yet. `color` tells the colour of a decision.
+    /// No parts yet, and room for so many regions. `color` tells the colour of a decision.
     pub(crate) fn new(
         grid: Grid,
         color: &'c dyn Fn(Decision) -> [f32; 3],
         late_from: u64,
+        regions: usize,
         arena: &'f Bump,
     ) -> Self {
         Builder {
             grid,
             arena,
-            edge_table: EdgeTableBuilder::new(arena),
+            edge_table: EdgeTableBuilder::new(regions, arena),
             paints: Paints::new(color, arena),
             shaded_spheres: 0,
             late_from,

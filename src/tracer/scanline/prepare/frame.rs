@@ -55,7 +55,9 @@ impl<'f> PreparedFrame<'f> {
         arena: &'f Bump,
     ) -> Self {
         let grid = Grid::new(picture.size);
-        let mut parts = Builder::new(grid, color, crowd.late_from, arena);
+        // Few solids have more regions.
+        let regions = 8 * picture.view.solid_count();
+        let mut parts = Builder::new(grid, color, crowd.late_from, regions, arena);
         let background = parts.paints.add(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
         let is_crowded = outlines.depth_complexity(grid) >= crowd.cull_from;
