@@ -26,16 +26,18 @@ pub(crate) struct Region<'f> {
     half_planes: &'f [HalfPlane],
     /// More half-planes: those of the region that this one is clipped to.
     clip: &'f [HalfPlane],
-    ellipse: Option<Ellipse>,
+    ellipse: Option<&'f Ellipse>,
     /// The half-open range of rows outside of which the region has no pixels that matter.
     rows: (u32, u32),
 }
 
 impl<'f> Region<'f> {
-    pub(crate) fn new(half_planes: &'f [HalfPlane], ellipse: Option<Ellipse>, grid: Grid) -> Self {
-        let rows = ellipse
-            .as_ref()
-            .map_or((0, grid.size), |ellipse| ellipse.rows(grid));
+    pub(crate) fn new(
+        half_planes: &'f [HalfPlane],
+        ellipse: Option<&'f Ellipse>,
+        grid: Grid,
+    ) -> Self {
+        let rows = ellipse.map_or((0, grid.size), |ellipse| ellipse.rows(grid));
         Region {
             half_planes,
             clip: &[],
@@ -85,8 +87,8 @@ impl<'f> Region<'f> {
         self.rows.0 >= self.rows.1
     }
 
-    pub(crate) fn ellipse(&self) -> Option<&Ellipse> {
-        self.ellipse.as_ref()
+    pub(crate) fn ellipse(&self) -> Option<&'f Ellipse> {
+        self.ellipse
     }
 
     /// The region's columns in the band of rows from `row` on.
@@ -268,7 +270,7 @@ mod tests {
                     [x, y, z, radius].map(|twice| Bounded::exact(twice as f64 / 2.0));
                 Ellipse::outline(Vector::new(x, y, z), radius, grid)
             });
-            let region = Region::new(&half_planes, ellipse, grid);
+            let region = Region::new(&half_planes, ellipse.as_ref(), grid);
             for first in (0..SIZE).step_by(ROWS) {
                 let mut band =
                     dispatch!(Level::baseline(), simd => region.enclose(simd, first, grid));

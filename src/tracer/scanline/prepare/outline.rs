@@ -114,10 +114,11 @@ impl<'f> Outlines<'f> {
             outlines.all.push(match view.solid(number) {
                 Solid::Sphere(sphere) => {
                     let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
+                    let ellipse = &*arena.alloc(ellipse);
                     Outlined {
                         number,
                         side,
-                        depth: Depth::of_sphere(sphere.center, &ellipse, sphere.support, grid),
+                        depth: Depth::of_sphere(sphere.center, ellipse, sphere.support, grid),
                         outline: Region::new(&[], Some(ellipse), grid).within(rows),
                         front_faces: &[],
                     }

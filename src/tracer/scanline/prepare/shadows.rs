@@ -122,7 +122,7 @@ pub(crate) fn shadows_on<'f>(
                     .iter()
                     .map(|half_space| HalfPlane::of(half_space, plane, grid));
                 let ellipse = lines.meet(sphere, grid);
-                Region::new(collect(arena, before), Some(ellipse), grid)
+                Region::new(collect(arena, before), Some(arena.alloc(ellipse)), grid)
             }
             Solid::Tetrahedron(t) => {
                 let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
