@@ -51,7 +51,7 @@ impl<'f> Region<'f> {
         Region {
             half_planes: memory.alloc_slice_copy(self.half_planes),
             clip,
-            ellipse: self.ellipse,
+            ellipse: self.ellipse.map(|ellipse| &*memory.alloc(*ellipse)),
             rows: self.rows,
         }
     }

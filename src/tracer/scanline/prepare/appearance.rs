@@ -66,6 +66,7 @@ pub(crate) fn prepare_solids<'f>(
     }
     PreparedSolids {
         mirrored,
+        numbers,
         sides,
         appearance: all_appearances.into_bump_slice(),
         depths: depths.into_bump_slice(),

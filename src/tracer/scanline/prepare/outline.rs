@@ -78,20 +78,16 @@ impl<'f> Outlines<'f> {
             all: bumpalo::collections::Vec::with_capacity_in(view.solid_count(), arena),
             area: 0,
         };
-        // What a band of rows shows of spheres lies side by side in memory if they are prepared in
-        // the order of bands. Of solids with one support, the first in the scene stays first:
-        // spheres with one support have the same rows.
-        let bands = (grid.size as usize).div_ceil(ROWS);
-        let count = view.solid_count();
-        let numbers = (0..count).filter(|number| kinds.hold(&picture.scene.solid(*number)));
-        let numbers = numbers.map(|number| match picture.scene.solid(number) {
-            Solid::Sphere(_) => {
-                let (first, _) = view.extents.of(number).rows(grid.size);
-                (first as usize / ROWS, number)
-            }
-            Solid::Tetrahedron(_) => (bands + 1, number),
+        // What a band of rows shows lies side by side in memory if it is prepared in the order of
+        // bands.
+        let numbers =
+            (0..view.solid_count()).filter(|number| kinds.hold(&picture.scene.solid(*number)));
+        let numbers = numbers.map(|number| {
+            let (first, _) = view.extents.of(number).rows(grid.size);
+            (first as usize / ROWS, number)
         });
-        let (numbers, _) = bucketed(arena, bands + 2, numbers);
+        let bands = (grid.size as usize).div_ceil(ROWS);
+        let (numbers, _) = bucketed(arena, bands + 1, numbers);
         for &number in numbers {
             let (side, extent) = (facts.sides[number], view.extents.of(number));
             let (mut first, mut end) = extent.rows(grid.size);
@@ -159,7 +155,7 @@ impl<'f> Outlines<'f> {
             let (from, to) = solid.outline.rows();
             let faces = solid.front_faces.iter();
             let shadows = faces.map(|face| casters.on(solid.number, Some(*face)).len() as u64);
-            u64::from(to - from) * shadows.sum::<u64>()
+            u64::from(to.saturating_sub(from)) * shadows.sum::<u64>()
         };
         self.all.iter().map(of_solid).sum::<u64>() / u64::from(grid.size)
     }

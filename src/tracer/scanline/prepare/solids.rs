@@ -13,6 +13,8 @@ use crate::tracer::scanline::write::paint::PaintNumber;
 /// few, so that it stays in the cache.
 pub(crate) struct PreparedSolids<'f> {
     pub(crate) mirrored: bool,
+    /// The number of each solid in the scene.
+    pub(crate) numbers: &'f [usize],
     /// The side of the surface that each solid is on.
     pub(crate) sides: &'f [Side],
     pub(crate) appearance: &'f [Appearance<'f>],
@@ -22,6 +24,11 @@ pub(crate) struct PreparedSolids<'f> {
 }
 
 impl<'f> PreparedSolids<'f> {
+    /// The number of a solid in the scene.
+    pub(crate) fn number(&self, SolidIndex(index): SolidIndex) -> usize {
+        self.numbers[index as usize]
+    }
+
     /// The side of the surface that a solid is on.
     pub(crate) fn side(&self, SolidIndex(index): SolidIndex) -> Side {
         self.sides[index as usize]

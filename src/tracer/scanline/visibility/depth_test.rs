@@ -217,15 +217,19 @@ fn front(
         let other = &candidates[*index];
         let depth = solids.depth(other.solid);
         let (lower, upper) = depth.bounds(other.front_face, interval);
-        let (front, (begins, ends_first)) = &candidate;
+        let (front, (begins, ends_first)) = &mut candidate;
         // Of two solids with one support, the first in the scene is seen.
-        if let Front::Candidate(first) = front
+        if let Front::Candidate(index_of_first) = front
+            && let first = &candidates[*index_of_first]
             && lower <= *ends_first
             && *begins <= upper
             && let own = support(other)
             && own.is_some()
-            && own == support(&candidates[*first])
+            && own == support(first)
         {
+            if solids.number(other.solid) < solids.number(first.solid) {
+                *index_of_first = *index;
+            }
             *kept = *begins;
             continue;
         }
