@@ -2,9 +2,14 @@
 //!
 //! The parts of frames own nothing, so none is dropped.
 
+use std::sync::{Mutex, OnceLock};
+
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
 use bumpalo_herd::{Herd, Member};
+
+use super::extent::Tiles;
+use super::pool::lock;
 
 /// The memory of one frame after the other. After the first few, it does not grow any more.
 #[derive(Default)]
@@ -13,6 +18,8 @@ pub(super) struct Arena {
     pub(super) setup: Bump,
     /// For the parts that threads make while they trace.
     pub(super) threads: Herd,
+    /// The tiles of the scene, and of its mirror image.
+    pub(super) tiles: [OnDemand<Tiles>; 2],
 }
 
 impl Arena {
@@ -20,6 +27,32 @@ impl Arena {
     pub(super) fn clear(&mut self) {
         self.setup.reset();
         self.threads.reset();
+        self.tiles.iter_mut().for_each(OnDemand::clear);
+    }
+}
+
+/// A part of a frame that is made where it is first asked for, in memory of its own.
+#[derive(Default)]
+pub(super) struct OnDemand<T> {
+    made: OnceLock<T>,
+    /// The part of a frame before, whose memory is reused.
+    before: Mutex<T>,
+}
+
+impl<T: Default> OnDemand<T> {
+    /// The part. `make` makes it of one that is out of date.
+    pub(super) fn get(&self, make: impl FnOnce(&mut T)) -> &T {
+        self.made.get_or_init(|| {
+            let mut part = std::mem::take(&mut *lock(&self.before));
+            make(&mut part);
+            part
+        })
+    }
+
+    fn clear(&mut self) {
+        if let Some(part) = self.made.take() {
+            self.before = Mutex::new(part);
+        }
     }
 }
 

@@ -1,10 +1,6 @@
 //! Bounding rectangles on the screen: most pixels need not be tested against most solids.
 
-use std::ops::RangeInclusive;
-
-use bumpalo::Bump;
-
-use super::arena::collect;
+use super::arena::{Arena, OnDemand, collect};
 use super::surface_casters::SurfaceCasterLookup;
 use super::vector::Vector;
 use super::view_space::{
@@ -14,12 +10,12 @@ use super::view_transform::ViewTransform;
 use crate::number::Bounded;
 use crate::scene::Scene;
 
-/// The pixels whose eye ray can meet a solid; all others certainly miss it.
-#[derive(Clone, Debug)]
+/// The pixels of a picture whose eye ray can meet a solid; all others certainly miss it.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
-    /// May reach beyond the picture, as `rows` may.
-    columns: RangeInclusive<i64>,
-    rows: RangeInclusive<i64>,
+    /// A half-open range, as `rows` is.
+    pub(super) columns: (u32, u32),
+    pub(super) rows: (u32, u32),
 }
 
 /// The extents of a frame: of every solid, of every solid in the mirror, and of the surface; and
@@ -31,20 +27,29 @@ pub(super) struct Extents<'f> {
     pub(super) casters_on_surface: Option<SurfaceCasterLookup<'f>>,
 }
 
-/// The extents of all solids, and which of them reach each tile of the screen, the nearest first.
+/// The extents of all solids.
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [SolidExtent],
-    /// N/2.
-    half: f64,
+    /// N.
+    size: u32,
+    /// Made when a pixel first asks: rows leave few pixels in doubt, and mostly none.
+    tiles: &'f OnDemand<Tiles>,
+}
+
+/// Which solids reach each tile of the screen.
+#[derive(Default)]
+pub(super) struct Tiles {
     /// Pixels along a side of a tile.
     side: u32,
     /// The number of tiles side by side.
-    tiles_per_row: u32,
+    per_row: u32,
     /// For each tile, the index of its first solid in `solids`; then the length of `solids`.
-    starts: &'f [u32],
+    starts: Vec<u32>,
     /// The solids of each tile, the nearest first.
-    solids: &'f [u16],
+    solids: Vec<u16>,
+    /// All solids, the farthest first.
+    order: Vec<u16>,
 }
 
 /// The extent of a solid, and how near it is.
@@ -66,20 +71,18 @@ const TILES: u32 = 32;
 /// So many solids share one tile.
 const MAX_UNTILED: usize = 16;
 
-impl<'f> ExtentsOfSolids<'f> {
-    const NONE: ExtentsOfSolids<'static> = ExtentsOfSolids {
-        all: &[],
-        half: 0.0,
-        side: 1,
-        tiles_per_row: 1,
-        starts: &[],
-        solids: &[],
-    };
-
-    fn new(all: &'f [SolidExtent], size: u32, arena: &'f Bump) -> Self {
+impl Tiles {
+    /// Finds the tiles of a frame.
+    fn find(&mut self, all: &[SolidExtent], size: u32) {
+        let Tiles {
+            starts,
+            solids,
+            order,
+            ..
+        } = self;
         let tiles = if all.len() > MAX_UNTILED { TILES } else { 1 };
         let side = size.div_ceil(tiles);
-        let tiles_per_row = size.div_ceil(side);
+        let per_row = size.div_ceil(side);
         let reached = |SolidExtent { extent, .. }: &SolidExtent| {
             let tiles = |(from, to): (u32, u32)| {
                 if from < to {
@@ -88,46 +91,49 @@ impl<'f> ExtentsOfSolids<'f> {
                     0..0
                 }
             };
-            let (columns, rows) = (tiles(extent.columns(size)), tiles(extent.rows(size)));
+            let (columns, rows) = (tiles(extent.columns), tiles(extent.rows));
             rows.flat_map(move |row| {
                 columns
                     .clone()
-                    .map(move |column| (row * tiles_per_row + column) as usize)
+                    .map(move |column| (row * per_row + column) as usize)
             })
         };
-        let starts = arena.alloc_slice_fill_copy((tiles_per_row * tiles_per_row) as usize + 1, 0);
+        starts.clear();
+        starts.resize((per_row * per_row) as usize + 1, 0);
         for tile in all.iter().flat_map(reached) {
             starts[tile] += 1;
         }
         let mut end = 0;
-        for start in &mut *starts {
+        for start in starts.iter_mut() {
             end += *start;
             *start = end;
         }
-        let solids = arena.alloc_slice_fill_copy(end as usize, 0);
+        solids.resize(end as usize, 0);
         // Each tile is filled from its end: the farthest first.
-        let order = arena.alloc_slice_fill_iter((0..all.len()).map(|solid| solid as u16));
+        order.clear();
+        order.extend((0..all.len()).map(|solid| solid as u16));
         let nearest = |solid: u16| all[usize::from(solid)].entry.nearest;
         order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)));
-        for &mut solid in order {
+        for &solid in order.iter() {
             for tile in reached(&all[usize::from(solid)]) {
                 starts[tile] -= 1;
                 solids[starts[tile] as usize] = solid;
             }
         }
-        ExtentsOfSolids {
-            all,
-            half: f64::from(size) / 2.0,
-            side,
-            tiles_per_row,
-            starts,
-            solids,
-        }
+        (self.side, self.per_row) = (side, per_row);
     }
 
+    /// The solids that reach the tile of a pixel.
+    fn solids_at(&self, (column, row): (u32, u32)) -> &[u16] {
+        let tile = (row / self.side * self.per_row + column / self.side) as usize;
+        &self.solids[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}
+
+impl<'f> ExtentsOfSolids<'f> {
     /// Y of a row.
     pub(super) fn y_of(&self, row: u32) -> f64 {
-        coordinate(row, self.half)
+        coordinate(row, f64::from(self.size) / 2.0)
     }
 
     /// The extent of a solid.
@@ -149,85 +155,62 @@ impl<'f> ExtentsOfSolids<'f> {
     }
 
     /// The solids that can be seen in a pixel, the nearest first.
-    pub(super) fn at(&self, (column, row): (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
-        let tile = (row / self.side * self.tiles_per_row + column / self.side) as usize;
-        let range = self.starts[tile] as usize..self.starts[tile + 1] as usize;
-        let (all, solids) = (self.all, &self.solids[range]);
-        let solids = solids.iter().map(|solid| usize::from(*solid));
-        solids.filter(move |solid| all[*solid].extent.holds(column, row))
+    pub(super) fn at(&self, pixel: (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
+        let (all, size) = (self.all, self.size);
+        let tiles = self.tiles.get(|tiles| tiles.find(all, size));
+        let solids = tiles.solids_at(pixel).iter();
+        let solids = solids.map(|solid| usize::from(*solid));
+        solids.filter(move |solid| all[*solid].extent.holds(pixel.0, pixel.1))
     }
 }
 
 impl Extent {
     #[inline]
     pub(super) fn holds(&self, column: u32, row: u32) -> bool {
-        self.columns.contains(&column.into()) && self.rows.contains(&row.into())
-    }
-
-    /// The half-open range of its rows in a picture of `size` rows.
-    pub(super) fn rows(&self, size: u32) -> (u32, u32) {
-        within(&self.rows, size)
-    }
-
-    /// The half-open range of its columns.
-    pub(super) fn columns(&self, size: u32) -> (u32, u32) {
-        within(&self.columns, size)
+        let within = |(from, to): (u32, u32), number: u32| from <= number && number < to;
+        within(self.columns, column) && within(self.rows, row)
     }
 
     /// Whether both extents have a pixel in common.
     pub(super) fn meets(&self, other: &Extent) -> bool {
-        let meet = |a: &RangeInclusive<i64>, b: &RangeInclusive<i64>| {
-            a.start() <= b.end() && b.start() <= a.end()
-        };
-        meet(&self.columns, &other.columns) && meet(&self.rows, &other.rows)
+        let meet = |a: (u32, u32), b: (u32, u32)| a.0.max(b.0) < a.1.min(b.1);
+        meet(self.columns, other.columns) && meet(self.rows, other.rows)
     }
 
-    /// The number of its pixels in a picture.
-    pub(super) fn area(&self, size: u32) -> u64 {
-        let length = |(from, to): (u32, u32)| u64::from(to.saturating_sub(from));
-        length(self.columns(size)) * length(self.rows(size))
+    /// The number of its pixels.
+    pub(super) fn area(&self) -> u64 {
+        let length = |(from, to): (u32, u32)| u64::from(to - from);
+        length(self.columns) * length(self.rows)
     }
 
     /// The smallest extent that holds the projections of all `points` onto the screen, each
     /// enlarged by `half_width` to the left and right and by `half_height` up and down, in view
     /// space, and by `rounding` to all sides.
-    fn of(
-        points: &[Vector<f64>],
+    fn of<const POINTS: usize>(
+        points: [Vector<f64>; POINTS],
         (half_width, half_height): (f64, f64),
         rounding: f64,
         size: u32,
     ) -> Extent {
         let half = f64::from(size) / 2.0;
-        // The ray through a point p meets the screen, z = 3N/2, at y = p.y + (3N/2 − p.z) · 3/10.
-        let columns = points.iter().map(|p| p.x);
-        let rows = points
-            .iter()
-            .map(|p| p.y + (PIXEL * half - p.z) * (EYE_Y / EYE_Z));
-        let range = |coordinates: &mut dyn Iterator<Item = f64>, half_length: f64| {
-            let ends = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (x.min(low), x.max(high))
-            });
-            let (low, high) = (
-                number_at(ends.0 - half_length - rounding, half),
-                number_at(ends.1 + half_length + rounding, half),
-            );
-            // A float beyond an i64 becomes the nearest one, which is far outside of any picture.
-            low.floor() as i64..=high.ceil() as i64
+        let range = |coordinates: [f64; POINTS], half_length: f64| {
+            let least = coordinates.into_iter().fold(f64::INFINITY, f64::min);
+            let most = coordinates.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let low = number_at(least - half_length - rounding, half);
+            let high = number_at(most + half_length + rounding, half);
+            // Conversions round down from 0 on, and give 0 below.
+            ((low as u32).min(size), ((high + 2.0) as u32).min(size))
         };
         Extent {
-            columns: range(&mut columns.into_iter(), half_width),
-            rows: range(&mut rows.into_iter(), half_height),
+            columns: range(points.map(|p| p.x), half_width),
+            // The ray through a point p meets the screen, z = 3N/2, at y = p.y + (3N/2 − p.z) ·
+            // 3/10.
+            rows: range(
+                points.map(|p| p.y + (PIXEL * half - p.z) * (EYE_Y / EYE_Z)),
+                half_height,
+            ),
         }
     }
-}
-
-/// The half-open part of a range that lies in a picture.
-fn within(range: &RangeInclusive<i64>, size: u32) -> (u32, u32) {
-    let clamped = |number: i64| number.clamp(0, size.into()) as u32;
-    (
-        clamped(*range.start()),
-        clamped(range.end().saturating_add(1)),
-    )
 }
 
 impl<'f> Extents<'f> {
@@ -236,7 +219,7 @@ impl<'f> Extents<'f> {
         transform: &ViewTransform<f64>,
         bounded: &ViewTransform<Bounded>,
         size: u32,
-        arena: &'f Bump,
+        arena: &'f Arena,
     ) -> Self {
         // To turn, scale, reflect and project a point takes fewer than 32 roundings, each by at
         // most u = 2⁻⁵³ of these magnitudes: 2⁻⁴⁰ of them is more than all roundings, and far less
@@ -259,7 +242,7 @@ impl<'f> Extents<'f> {
                 // A sphere is as wide as its diameter; slanting rays √109/10 times as high.
                 let half = (radius, radius * root / EYE_Z);
                 SolidExtent {
-                    extent: Extent::of(&[center], half, rounding, size),
+                    extent: Extent::of([center], half, rounding, size),
                     entry: Entry {
                         nearest: along(center) - radius * root - 16.0 * rounding,
                         // Rays that touch the sphere enter it last.
@@ -272,15 +255,18 @@ impl<'f> Extents<'f> {
                 let rounding = rounding(&vertices, 0.0);
                 let depths = vertices.map(along).into_iter();
                 SolidExtent {
-                    extent: Extent::of(&vertices, (0.0, 0.0), rounding, size),
+                    extent: Extent::of(vertices, (0.0, 0.0), rounding, size),
                     entry: Entry {
                         nearest: depths.clone().fold(f64::INFINITY, f64::min) - 16.0 * rounding,
                         farthest: depths.fold(f64::NEG_INFINITY, f64::max) + 16.0 * rounding,
                     },
                 }
             });
-            let all = collect(arena, spheres.chain(tetrahedra));
-            ExtentsOfSolids::new(all, size, arena)
+            ExtentsOfSolids {
+                all: collect(&arena.setup, spheres.chain(tetrahedra)),
+                size,
+                tiles: &arena.tiles[usize::from(mirror_height.is_some())],
+            }
         };
         let surface = scene.surface().map(|surface| {
             let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, z)| {
@@ -290,16 +276,14 @@ impl<'f> Extents<'f> {
                     z * surface.half_width,
                 ))
             });
-            Extent::of(&corners, (0.0, 0.0), rounding(&corners, 0.0), size)
+            Extent::of(corners, (0.0, 0.0), rounding(&corners, 0.0), size)
         });
+        let direct = solids(None);
+        // A scene without a surface has no mirror images.
         let mirror_height = transform.surface_height(scene);
-        let mirrored = if mirror_height.is_some() {
-            solids(mirror_height)
-        } else {
-            ExtentsOfSolids::NONE
-        };
+        let mirrored = mirror_height.map_or(direct, |height| solids(Some(height)));
         Extents {
-            direct: solids(None),
+            direct,
             mirrored,
             surface,
             casters_on_surface: SurfaceCasterLookup::new(scene, bounded),

@@ -4,7 +4,6 @@ use std::cell::LazyCell;
 use std::convert::Infallible;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
-use bumpalo::Bump;
 use bumpalo_herd::Herd;
 
 use super::arena::{Arena, SliceAllocator};
@@ -59,17 +58,22 @@ struct FrameSetup<'f> {
 }
 
 impl<'f> FrameSetup<'f> {
-    fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Bump) -> Self {
+    fn new(scene: &'f Scene, stage: Stage, alpha: f64, size: u32, arena: &'f Arena) -> Self {
         let bounded = transform::<Bounded>(alpha, size);
         let plain = transform::<f64>(alpha, size);
         let double_double = LazyCell::new(|| transform::<DoubleDouble>(alpha, size));
         let signs = |mirrored| {
             let Ok(signs) = bounded
-                .signs(scene, &plain, mirrored, arena)
-                .or_else(|Doubt| double_double.signs(scene, &plain, mirrored, arena))
+                .signs(scene, &plain, mirrored, &arena.setup)
+                .or_else(|Doubt| double_double.signs(scene, &plain, mirrored, &arena.setup))
                 .or_else(|Doubt| {
                     Expression::session(|| {
-                        transform::<Expression>(alpha, size).signs(scene, &plain, mirrored, arena)
+                        transform::<Expression>(alpha, size).signs(
+                            scene,
+                            &plain,
+                            mirrored,
+                            &arena.setup,
+                        )
                     })
                 });
             signs.refined(scene, &bounded, mirrored, || {
@@ -125,8 +129,8 @@ impl<'f, R: Real<Doubt = Infallible>> Plain<'f, R> {
         size: u32,
         arena: &'f Arena,
     ) -> Self {
-        let arena = &arena.setup;
         let setup = FrameSetup::new(scene, stage, alpha, size, arena);
+        let arena = &arena.setup;
         Plain {
             bounded: setup.picture(scene, stage, &setup.transform, size, &arena),
             picture: setup.picture(scene, stage, &transform(alpha, size), size, &arena),
@@ -198,11 +202,8 @@ impl<'f> Ladder<'f> {
         lowest: Rung,
         arena: &'f Arena,
     ) -> Self {
-        let Arena {
-            setup: arena,
-            threads,
-        } = arena;
         let setup = FrameSetup::new(scene, stage, alpha, size, arena);
+        let (arena, threads) = (&arena.setup, &arena.threads);
         Ladder {
             scene,
             stage,

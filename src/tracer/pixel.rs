@@ -116,7 +116,7 @@ impl<'f, R: Real> Picture<'f, R> {
             (Some(described), Some(square), Some((extent, casters))) if stage >= Stage::Shadow => {
                 Some(SeenSurface {
                     square,
-                    extent: extent.clone(),
+                    extent: *extent,
                     casters,
                     color: Vector::exact(described.color),
                     mirror: signs.mirrored.as_ref().map(|signs| Mirror {

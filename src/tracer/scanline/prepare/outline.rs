@@ -83,19 +83,18 @@ impl<'f> Outlines<'f> {
         let numbers =
             (0..view.solid_count()).filter(|number| kinds.hold(&picture.scene.solid(*number)));
         let numbers = numbers.map(|number| {
-            let (first, _) = view.extents.of(number).rows(grid.size);
+            let (first, _) = view.extents.of(number).rows;
             (first as usize / ROWS, number)
         });
         let bands = (grid.size as usize).div_ceil(ROWS);
         let (numbers, _) = bucketed(arena, bands + 1, numbers);
         for &number in numbers {
             let (side, extent) = (facts.sides[number], view.extents.of(number));
-            let (mut first, mut end) = extent.rows(grid.size);
+            let (mut first, mut end) = extent.rows;
             if let Some(within) = within {
-                let rows = within.rows(grid.size);
-                (first, end) = (first.max(rows.0), end.min(rows.1));
+                (first, end) = (first.max(within.rows.0), end.min(within.rows.1));
             }
-            let area = extent.area(grid.size);
+            let area = extent.area();
             let is_seen = area > 0
                 // From this stage on all solids take part, and a hidden one is never seen.
                 && !(facts.enclosed[number] && stage >= Stage::Shading)

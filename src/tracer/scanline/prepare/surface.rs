@@ -51,7 +51,7 @@ impl<'f> PreparedSurface<'f> {
         let rises = scene.light().rise().is_gt();
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let depth = SurfaceDepth::new(&surface.square, grid);
-        let rows = surface.extent.rows(grid.size);
+        let rows = surface.extent.rows;
         let sides = parts
             .arena
             .alloc(sides_on_screen(&surface.square, &plane, grid));
