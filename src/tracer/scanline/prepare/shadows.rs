@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use bumpalo::Bump;
 
-use crate::number::{Bounded, Real};
+use crate::number::Bounded;
 use crate::scene::{Side, Solid};
 use crate::tracer::arena::collect;
 use crate::tracer::half_space::HalfSpace;
@@ -147,22 +147,15 @@ pub(crate) fn casters_on<'f>(
     casters: &[u16],
     arena: &'f Bump,
 ) -> impl Iterator<Item = Caster<'f>> {
-    let to_light = view.shading.to_light;
     let support = view.spheres[index].support;
-    let own = LazyCell::new(|| constants.own_moment(lighting));
     casters.iter().filter_map(move |&caster| {
         let caster = usize::from(caster);
         match view.solid(caster) {
             // No sphere shadows itself, nor a sphere that is listed twice.
             Solid::Sphere(sphere) if sphere.support == support => None,
             Solid::Sphere(sphere) => {
-                let (moment, before) = constants.moment(sphere.center, &to_light, &own);
-                let squared_radius = to_light.squared_length * sphere.radius.squared();
-                Some(Caster::Sphere(arena.alloc(ShadowCylinder::new(
-                    before,
-                    moment,
-                    squared_radius,
-                ))))
+                let cylinder = ShadowCylinder::new(constants, sphere, lighting);
+                Some(Caster::Sphere(cylinder))
             }
             Solid::Tetrahedron(t) => {
                 let ahead = t.solid.ahead(&t.light_edges);

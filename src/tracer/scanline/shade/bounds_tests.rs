@@ -14,6 +14,7 @@ use crate::tracer::ladder::{Ladder, RowPixels, Rung};
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
+use crate::tracer::scanline::shade::caster::ShadowCylinder;
 use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
 use crate::tracer::scanline::shade::equation::RowShader;
 use crate::tracer::scanline::shade::light::Lighting;
@@ -270,18 +271,16 @@ fn check_view(
         let lighting = Lighting::new(&view.shading);
         let constants = SphereConstants::new(sphere, &outline, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
-        let to_light = &view.shading.to_light;
-        let own = constants.own_moment(&lighting);
-        let ([x, y, z], before) = constants.moment(view.spheres[other].center, to_light, &own);
+        let cylinder = ShadowCylinder::new(&constants, &view.spheres[other], &lighting);
         let case = Case {
             picture: truth.0,
             view: true_view,
             sphere: &true_view.spheres[index],
             color: truth.0.solid_color(index) * truth.2,
+            forms: cylinder.forms(&constants),
             constants,
             grid,
             other: true_view.spheres[other].center,
-            forms: [x, y, z, before],
         };
         for row in (0..SIZE).step_by(3) {
             // With fused multiply-add, if the processor has it, and without.

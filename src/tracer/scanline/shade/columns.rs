@@ -145,7 +145,7 @@ impl SphereBand {
         let row = |row: usize| grid.coordinate(first + row as u32);
         let hits = shaded.constants.hit_box(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
-        let near = casters.filter(|(_, caster)| !caster.misses(&hits));
+        let near = casters.filter(|(_, caster)| !caster.misses(&shaded.constants, &hits));
         near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 

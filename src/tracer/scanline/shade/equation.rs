@@ -137,7 +137,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                 (yes, no)
             }
             Caster::Sphere(cylinder) => {
-                let [x, y, z] = &cylinder.moment;
+                let [x, y, z, before] = &cylinder.forms(self.sphere);
                 let [x, y, z] = [
                     self.value(x, hits),
                     self.value(y, hits),
@@ -147,9 +147,8 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                     splat::<S, P>(self.simd, cylinder.squared_radius) - (x * x + y * y + z * z);
                 let (inside, outside) = P::is_not_negative(inside, cylinder.error);
                 // A caster abreast of the hit casts no shadow on it.
-                let before = &cylinder.before;
                 let (not_before, is_before) =
-                    P::is_not_negative(-self.value(before, hits), before.error);
+                    P::is_not_negative(-self.value(before, hits), cylinder.form_error);
                 (inside & is_before, outside | not_before)
             }
         }

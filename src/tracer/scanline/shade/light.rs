@@ -3,6 +3,7 @@
 
 use crate::number::rounding::INFLATION;
 use crate::number::{Bounded, Real};
+use crate::tracer::line::Direction;
 use crate::tracer::shading::Shading;
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z};
@@ -40,10 +41,12 @@ pub(crate) struct Lighting {
     pub(crate) axes: Axes,
     /// l, of length 1.
     pub(crate) to_light_unit: [Bounded; 3],
-    /// The vectors whose products with n are the components of n × l, with an l of any length.
-    pub(crate) cross_l: [[Bounded; 3]; 3],
-    /// −l.
-    pub(crate) before: [Bounded; 3],
+    /// The direction to the light, of any length.
+    pub(crate) to_light: Direction<Bounded>,
+    /// The vectors whose products with n are the components of n × l, and −n·l, with that l.
+    pub(crate) moment: [[f64; 3]; 4],
+    /// The largest magnitude and the largest error of their components along each axis.
+    pub(crate) moment_sizes: [(f64, f64); 3],
     /// h, of length 1; `None` where there is no highlight.
     pub(crate) halfway: Option<[Bounded; 3]>,
     pub(crate) highlight: Highlight,
@@ -72,11 +75,17 @@ impl Lighting {
         let axes = Axes::new();
         let l = shading.to_light.vector;
         let zero = Bounded::exact(0.0);
-        let cross_l = [
+        let moment = [
             Vector::new(zero, l.z, -l.y),
             Vector::new(-l.z, zero, l.x),
             Vector::new(l.y, -l.x, zero),
-        ];
+            -l,
+        ]
+        .map(|vector| axes.of(vector));
+        let largest = |axis: usize, of: fn(Bounded) -> f64| {
+            let along = moment.iter().map(|vector| of(vector[axis]));
+            along.fold(0.0, f64::max)
+        };
         let exponent = shading.exponent();
         let n = f64::from(exponent);
         // (1 − x)ⁿ ≤ e^−nx.
@@ -85,8 +94,12 @@ impl Lighting {
         Lighting {
             axes,
             to_light_unit: axes.of(shading.to_light_unit()),
-            cross_l: cross_l.map(|vector| axes.of(vector)),
-            before: axes.of(-l),
+            to_light: shading.to_light,
+            moment: moment.map(|vector| vector.map(Bounded::value)),
+            moment_sizes: [0, 1, 2].map(|axis| {
+                let magnitude = largest(axis, |x| x.value().abs());
+                (magnitude, largest(axis, Bounded::error))
+            }),
             halfway: shading.halfway().map(|h| axes.of(h)),
             highlight: Highlight {
                 exponent,

@@ -100,7 +100,8 @@ impl SpanShader {
                 let hits = shaded.constants.hit_box(ends, (writer.y, writer.y));
                 let casters = shaded.casters.iter().enumerate();
                 let near = casters.filter(|(number, caster)| {
-                    sphere.casters & bit_of(*number) != 0 && !caster.misses(&hits)
+                    sphere.casters & bit_of(*number) != 0
+                        && !caster.misses(&shaded.constants, &hits)
                 });
                 casters_near.extend(near.map(|(number, _)| number));
             }

@@ -13,7 +13,6 @@ use std::cmp::Ordering;
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::half_space::HalfSpace;
-use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::shade::light::{Highlight, Lighting};
 use crate::tracer::sphere::Sphere;
@@ -42,8 +41,6 @@ pub(crate) struct LinearForm {
     pub(crate) s: f64,
     /// A bound on the error of the form in f64, in any zone.
     pub(crate) error: f64,
-    /// A bound on the form's magnitude.
-    pub(crate) magnitude: f64,
     /// Whether a_s is certainly not negative, or certainly not positive: then the form is concave,
     /// or convex, along a row.
     pub(crate) is_concave: Option<bool>,
@@ -57,7 +54,6 @@ impl LinearForm {
         m: 0.0,
         s: 0.0,
         error: f64::INFINITY,
-        magnitude: f64::INFINITY,
         is_concave: None,
     };
 
@@ -67,7 +63,6 @@ impl LinearForm {
         LinearForm {
             constant: constant.value(),
             error: self.error + (constant.error() + 8.0 * U * magnitude) * INFLATION,
-            magnitude: self.magnitude + magnitude * INFLATION,
             ..self
         }
     }
@@ -107,6 +102,11 @@ pub(crate) struct HitBox {
     s: (f64, f64),
 }
 
+/// The magnitudes and the errors of a form's factors.
+fn sizes(factors: &[Bounded; 3]) -> [(f64, f64); 3] {
+    factors.map(|factor| (factor.value().abs(), factor.error()))
+}
+
 /// The highlight of a sphere.
 pub(crate) struct SphereHighlight {
     /// n·h.
@@ -140,28 +140,28 @@ impl HitBounds {
             q: factors[0].value(),
             m: factors[1].value(),
             s: factors[2].value(),
-            error: self.error(&factors, self.s_errors[ZONES - 1]),
-            magnitude: self.magnitude(&factors) * INFLATION,
+            error: self.errors(sizes(&factors))[ZONES - 1],
             is_concave: factors[2].sign().ok().map(Ordering::is_ge),
         }
     }
 
-    fn magnitude(&self, factors: &[Bounded; 3]) -> f64 {
-        factors.iter().map(|f| f.value().abs() * self.radius).sum()
+    /// A bound on the magnitude of a form without a constant, whose factors have these sizes.
+    fn magnitude(&self, [q, m, s]: [(f64, f64); 3]) -> f64 {
+        (q.0 + m.0 + s.0) * self.radius
     }
 
-    /// A bound on the error of a form without a constant where the error of s is at most `s_error`.
-    fn error(&self, factors: &[Bounded; 3], s_error: f64) -> f64 {
+    /// In each zone, a bound on the error of such a form.
+    fn errors(&self, sizes: [(f64, f64); 3]) -> [f64; ZONES] {
         // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the
         // sum of all magnitudes.
-        let terms = factors.iter().zip([self.q_error, self.m_error, s_error]);
-        let carried: f64 = terms
-            .map(|(factor, error)| {
-                factor.error() * (self.radius + error) + factor.value().abs() * error
-            })
-            .sum();
-        let rounded = 8.0 * U * self.magnitude(factors);
-        (carried + rounded) * INFLATION
+        let carried = |(magnitude, factor_error): (f64, f64), error: f64| {
+            factor_error * (self.radius + error) + magnitude * error
+        };
+        let [q, m, s] = sizes;
+        let rounded = 8.0 * U * self.magnitude(sizes);
+        let others = carried(q, self.q_error) + carried(m, self.m_error) + rounded;
+        self.s_errors
+            .map(|error| (others + carried(s, error)) * INFLATION)
     }
 
     /// The highlight of a sphere of this radius, where `h` is that of the view.
@@ -220,7 +220,14 @@ pub(crate) struct SphereConstants {
     /// The smallest s² of each zone.
     pub(crate) min_squares: [f64; ZONES],
     bounds: HitBounds,
-    center: Vector<Bounded>,
+    pub(crate) center: Vector<Bounded>,
+    /// The factors of q, m and s in n × l, and in −n·l, with n of the radius's length and an l of
+    /// any length.
+    pub(crate) moment: [[f64; 3]; 4],
+    /// A bound on the error of these four.
+    pub(crate) moment_error: f64,
+    /// A bound on their magnitudes.
+    pub(crate) moment_magnitude: f64,
     /// n·l, with n and l of length 1.
     pub(crate) n_dot_l: LinearForm,
     /// 1/R.
@@ -292,25 +299,19 @@ impl SphereConstants {
         let form_error = sphere_highlight.as_ref().map_or(0.0, |h| h.form.error);
         let is_small = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
         let left_out = if is_small { tiny } else { f64::INFINITY };
-        let light_errors = bounds
-            .s_errors
-            .map(|s_error| bounds.error(&to_light, s_error));
-        let mut errors = [0.0_f64; ZONES];
+        // The largest of each part of the bound among all channels.
+        let (mut carried, mut diffuse, mut rest) = (0.0_f64, 0.0_f64, 0.0_f64);
         let mut channel = |color: Bounded, coefficients: [Bounded; 3]| {
             let [a, d, s] = coefficients.map(|coefficient| coefficient.value() * color.value());
             let magnitudes = a.abs() + d.abs() + s.abs();
             let sum = |of: fn(Bounded) -> f64| coefficients.map(of).iter().sum::<f64>();
             // AB − ab = α B + a β + …, for all three products together.
-            let carried = sum(|x| x.value().abs()) * color.error()
+            let of_color = sum(|x| x.value().abs()) * color.error()
                 + sum(Bounded::error) * (color.value().abs() + color.error());
             let specular = if s == 0.0 { 0.0 } else { s.abs() * left_out };
-            for (all, light) in errors.iter_mut().zip(light_errors) {
-                // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three
-                // products round, and then two products and two sums.
-                let error =
-                    (1.1 + light) * carried + d.abs() * light + specular + 10.0 * U * magnitudes;
-                *all = (error * INFLATION).max(*all);
-            }
+            carried = carried.max(of_color);
+            diffuse = diffuse.max(d.abs());
+            rest = rest.max(specular + 10.0 * U * magnitudes);
             // −0 becomes +0, so that no sample is −0.
             [a + 0.0, d + 0.0, s + 0.0]
         };
@@ -320,6 +321,11 @@ impl SphereConstants {
             channel(color.y, green),
             channel(color.z, blue),
         ];
+        // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three products round,
+        // and then two products and two sums.
+        let errors = bounds
+            .errors(sizes(&to_light))
+            .map(|light| ((1.1 + light) * carried + diffuse * light + rest) * INFLATION);
         let cycle = |part: usize| std::array::from_fn(|sample| channels[sample % 3][part]);
         SphereConstants {
             center_x: sphere.center.x.value(),
@@ -327,6 +333,9 @@ impl SphereConstants {
             m: outline.m,
             min_squares: ZONE_DIVISORS
                 .map(|divisor| (radius / divisor) * (radius / divisor) * INFLATION),
+            moment: lighting.moment,
+            moment_error: bounds.errors(lighting.moment_sizes)[ZONES - 1],
+            moment_magnitude: bounds.magnitude(lighting.moment_sizes),
             bounds,
             center: sphere.center,
             n_dot_l,
@@ -376,26 +385,5 @@ impl SphereConstants {
         let n = half_space.normal;
         let form = self.bounds.form(lighting.axes.of(n));
         form.plus(n.dot(self.center - half_space.at))
-    }
-
-    /// The components of n × l, and −n·l, with n of the radius's length: the parts of
-    /// [`SphereConstants::moment`] that are the same for all casters.
-    pub(crate) fn own_moment(&self, lighting: &Lighting) -> ([LinearForm; 3], LinearForm) {
-        let moment = lighting.cross_l.map(|factors| self.bounds.form(factors));
-        (moment, self.bounds.form(lighting.before))
-    }
-
-    /// The components of the moment (hit − c) × l, and (c − hit)·l, for a caster's centre c.
-    pub(crate) fn moment(
-        &self,
-        center: Vector<Bounded>,
-        to_light: &Direction<Bounded>,
-        ([x, y, z], before): &([LinearForm; 3], LinearForm),
-    ) -> ([LinearForm; 3], LinearForm) {
-        let l = to_light.vector;
-        let from = self.center - center;
-        let constant = from.cross(l);
-        let moment = [x.plus(constant.x), y.plus(constant.y), z.plus(constant.z)];
-        (moment, before.plus(-from.dot(l)))
     }
 }
