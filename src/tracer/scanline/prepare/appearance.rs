@@ -24,7 +24,7 @@ use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shado
 use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::shade::sphere::SphereConstants;
+use crate::tracer::scanline::shade::sphere::{HitBounds, SphereConstants};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::view::View;
@@ -108,7 +108,7 @@ pub(crate) fn late_faces<'l, 'f>(
 }
 
 /// Makes the appearances of a view's solids.
-struct Appearances<'p, 's> {
+struct Appearances<'p, 's, 'f> {
     picture: &'p Picture<'s, Bounded>,
     view: &'p View<'s, Bounded>,
     mirrored: bool,
@@ -116,10 +116,10 @@ struct Appearances<'p, 's> {
     has_shadows: bool,
     surface: SurfaceShadow<'p>,
     /// Made for the first sphere.
-    lighting: OnceCell<Lighting>,
+    lighting: OnceCell<&'f Lighting>,
 }
 
-impl<'p, 's> Appearances<'p, 's> {
+impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
     fn new(picture: &'p Picture<'s, Bounded>, view: &'p View<'s, Bounded>, mirrored: bool) -> Self {
         Appearances {
             picture,
@@ -132,7 +132,7 @@ impl<'p, 's> Appearances<'p, 's> {
     }
 
     /// The appearance of a solid, whose regions and paints are added.
-    fn of<'f>(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Appearance<'f> {
+    fn of(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Appearance<'f> {
         match (self.view.solid(solid.number), solid.outline.ellipse()) {
             (Solid::Sphere(sphere), Some(outline)) => {
                 self.sphere(solid.number, sphere, outline, parts)
@@ -158,7 +158,7 @@ impl<'p, 's> Appearances<'p, 's> {
         }
     }
 
-    fn sphere<'f>(
+    fn sphere(
         &self,
         number: usize,
         sphere: &Sphere<Bounded>,
@@ -176,31 +176,40 @@ impl<'p, 's> Appearances<'p, 's> {
         } else {
             color
         };
-        let lighting = self
+        let lighting = *self
             .lighting
-            .get_or_init(|| Lighting::new(&self.view.shading));
-        let constants = SphereConstants::new(sphere, outline, lighting, color, self.has_shadows);
-        let casters = if self.has_shadows {
+            .get_or_init(|| arena.alloc(Lighting::new(&self.view.shading)));
+        let bounds = HitBounds::new(sphere, outline);
+        let mut casters = Growing::new_in(arena);
+        if self.has_shadows {
             let facts = self.picture.scene.facts();
             let solids = facts.casters.on(number, None);
-            let solids = casters_on(&constants, number, self.view, lighting, solids, arena);
-            let surface = self.surface.on_sphere(number, &constants, lighting, arena);
-            collect(arena, solids.chain(surface))
-        } else {
-            &[]
-        };
+            let surface = self.surface.on_sphere(number, &bounds, lighting, arena);
+            // Most spheres have one caster or none.
+            casters.reserve_exact(solids.len() + surface.iter().len());
+            let solids = casters_on(&bounds, number, self.view, lighting, solids, arena);
+            casters.extend(solids.chain(surface));
+        }
+        let in_shadow = paint(self.has_shadows);
         parts.shaded_spheres += 1;
-        Appearance::Sphere(arena.alloc(ShadedSphere {
+        Appearance::Sphere(arena.alloc_with(|| ShadedSphere {
             number: parts.shaded_spheres - 1,
-            constants,
-            casters,
+            constants: SphereConstants::new(
+                sphere,
+                outline,
+                &bounds,
+                lighting,
+                color,
+                self.has_shadows,
+            ),
+            casters: casters.into_bump_slice(),
             in_light: self.decision(number, None, false),
-            in_shadow: paint(self.has_shadows),
+            in_shadow,
         }))
     }
 
     /// The front faces of a tetrahedron, whose regions and paints are added.
-    fn front_faces<'f>(
+    fn front_faces(
         &self,
         solid: &OutlinedFaces<'f>,
         t: &TetrahedronInView<Bounded>,
@@ -247,7 +256,7 @@ impl<'p, 's> Appearances<'p, 's> {
     }
 
     /// The shadows that may fall on a front face.
-    fn shadows_on_face<'f>(
+    fn shadows_on_face(
         &self,
         solid: &OutlinedFaces<'f>,
         face: usize,

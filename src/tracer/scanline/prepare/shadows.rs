@@ -17,7 +17,7 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
-use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants};
+use crate::tracer::scanline::shade::sphere::{HitBounds, LinearForm};
 use crate::tracer::surface::Surface;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
@@ -71,12 +71,12 @@ impl<'p> SurfaceShadow<'p> {
     pub(crate) fn on_sphere<'f>(
         &self,
         solid: usize,
-        constants: &SphereConstants,
+        bounds: &HitBounds,
         lighting: &Lighting,
         arena: &'f Bump,
     ) -> Option<Caster<'f>> {
         let forms = self.on(solid)?;
-        let forms = forms.map(|half_space| constants.inside(&half_space, lighting));
+        let forms = forms.map(|half_space| bounds.inside(&half_space, lighting));
         let in_doubt = self.rise.is_eq().then_some(LinearForm::IN_DOUBT);
         Some(Caster::Polyhedron(collect(arena, forms.chain(in_doubt))))
     }
@@ -140,7 +140,7 @@ pub(crate) fn shadows_on<'f>(
 
 /// The casters of a sphere.
 pub(crate) fn casters_on<'f>(
-    constants: &SphereConstants,
+    bounds: &HitBounds,
     index: usize,
     view: &View<'_, Bounded>,
     lighting: &Lighting,
@@ -154,12 +154,12 @@ pub(crate) fn casters_on<'f>(
             // No sphere shadows itself, nor a sphere that is listed twice.
             Solid::Sphere(sphere) if sphere.support == support => None,
             Solid::Sphere(sphere) => {
-                let cylinder = ShadowCylinder::new(constants, sphere, lighting);
+                let cylinder = ShadowCylinder::new(bounds, sphere, lighting);
                 Some(Caster::Sphere(cylinder))
             }
             Solid::Tetrahedron(t) => {
                 let ahead = t.solid.ahead(&t.light_edges);
-                let forms = ahead.map(|half_space| constants.inside(&half_space, lighting));
+                let forms = ahead.map(|half_space| bounds.inside(&half_space, lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }

@@ -19,7 +19,7 @@ use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
 use crate::tracer::scanline::shade::equation::RowShader;
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
+use crate::tracer::scanline::shade::sphere::{HitBounds, LinearForm, SphereConstants, ZONES};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
@@ -156,7 +156,7 @@ struct Case<'c> {
     view: &'c View<'c, DoubleDouble>,
     sphere: &'c Sphere<DoubleDouble>,
     color: Vector<DoubleDouble>,
-    constants: SphereConstants,
+    constants: SphereConstants<'c>,
     grid: Grid,
     /// Another sphere's centre.
     other: Vector<DoubleDouble>,
@@ -219,9 +219,13 @@ impl Case<'_> {
                 let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
                 let facing = terms.normal_light.to_f64();
                 let column = first + lane as u32;
-                found
-                    .cache
-                    .note(&columns, column, facing, halfway, constants.threshold);
+                found.cache.note(
+                    &columns,
+                    column,
+                    facing,
+                    halfway,
+                    constants.lighting.highlight.threshold,
+                );
 
                 let (from, l) = (hit.point - self.other, shading.to_light.vector);
                 let moment = from.cross(l);
@@ -269,15 +273,16 @@ fn check_view(
         let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
         let color = bounded.0.solid_color(index) * bounded.2;
         let lighting = Lighting::new(&view.shading);
-        let constants = SphereConstants::new(sphere, &outline, &lighting, color, true);
+        let bounds = HitBounds::new(sphere, &outline);
+        let constants = SphereConstants::new(sphere, &outline, &bounds, &lighting, color, true);
         let other = (index + 1) % view.spheres.len();
-        let cylinder = ShadowCylinder::new(&constants, &view.spheres[other], &lighting);
+        let cylinder = ShadowCylinder::new(&bounds, &view.spheres[other], &lighting);
         let case = Case {
             picture: truth.0,
             view: true_view,
             sphere: &true_view.spheres[index],
             color: truth.0.solid_color(index) * truth.2,
-            forms: cylinder.forms(&constants),
+            forms: cylinder.forms(&lighting),
             constants,
             grid,
             other: true_view.spheres[other].center,

@@ -3,7 +3,7 @@
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::scanline::shade::light::Lighting;
-use crate::tracer::scanline::shade::sphere::{HitBox, LinearForm, SphereConstants};
+use crate::tracer::scanline::shade::sphere::{HitBounds, HitBox, LinearForm, ZONES};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
 
@@ -33,7 +33,7 @@ pub(crate) struct ShadowCylinder {
 
 impl Caster<'_> {
     /// Whether the caster certainly casts no shadow on the pixels of a box.
-    pub(crate) fn misses(&self, sphere: &SphereConstants, hits: &HitBox) -> bool {
+    pub(crate) fn misses(&self, lighting: &Lighting, hits: &HitBox) -> bool {
         match self {
             Caster::Polyhedron(forms) => forms.iter().any(|form| form.is_negative(hits)),
             Caster::Sphere(cylinder) => {
@@ -45,7 +45,7 @@ impl Caster<'_> {
                         (low * low).min(high * high)
                     }
                 };
-                let [x, y, z, before] = &cylinder.forms(sphere);
+                let [x, y, z, before] = &cylinder.forms(lighting);
                 let upper =
                     cylinder.squared_radius - (min_square(x) + min_square(y) + min_square(z));
                 upper < -cylinder.error || before.is_negative(hits)
@@ -55,9 +55,9 @@ impl Caster<'_> {
 }
 
 impl ShadowCylinder {
-    /// The shadow of `caster` on the sphere of these constants.
+    /// The shadow of `caster` on a sphere.
     pub(crate) fn new(
-        sphere: &SphereConstants,
+        sphere: &HitBounds,
         caster: &Sphere<Bounded>,
         lighting: &Lighting,
     ) -> ShadowCylinder {
@@ -79,10 +79,10 @@ impl ShadowCylinder {
         // AB − ab = α B + a β; at most three products and two sums round, each by u of no more than
         // all magnitudes. Then the sum with the constant rounds, and three more that it is part of.
         let carried = distance * length_error + (length + length_error) * distance_error;
+        let own_error = sphere.errors(lighting.moment_sizes)[ZONES - 1];
         let form_error =
-            (sphere.moment_error + carried + 5.0 * U * distance * length + 8.0 * U * largest)
-                * INFLATION;
-        let magnitude = sphere.moment_magnitude + largest;
+            (own_error + carried + 5.0 * U * distance * length + 8.0 * U * largest) * INFLATION;
+        let magnitude = sphere.magnitude(lighting.moment_sizes) + largest;
         let squared_radius = lighting.to_light.squared_length * caster.radius.squared();
         // |(a + ε)² − a²| ≤ 2|a|ε + ε² for each component; six operations round, each by less than
         // u of all magnitudes.
@@ -100,12 +100,12 @@ impl ShadowCylinder {
 
     /// The components of the moment (p − c) × l, and (c − p)·l.
     #[inline(always)]
-    pub(crate) fn forms(&self, sphere: &SphereConstants) -> [LinearForm; 4] {
+    pub(crate) fn forms(&self, lighting: &Lighting) -> [LinearForm; 4] {
         let form = |i: usize| LinearForm {
             constant: self.constants[i],
-            q: sphere.moment[i][0],
-            m: sphere.moment[i][1],
-            s: sphere.moment[i][2],
+            q: lighting.moment[i][0],
+            m: lighting.moment[i][1],
+            s: lighting.moment[i][2],
             error: self.form_error,
             is_concave: None,
         };

@@ -145,7 +145,7 @@ impl SphereBand {
         let row = |row: usize| grid.coordinate(first + row as u32);
         let hits = shaded.constants.hit_box(columns, (row(low), row(high)));
         let casters = shaded.casters.iter().enumerate();
-        let near = casters.filter(|(_, caster)| !caster.misses(&shaded.constants, &hits));
+        let near = casters.filter(|(_, caster)| !caster.misses(shaded.constants.lighting, &hits));
         near.fold(0, |all, (number, _)| all | bit_of(number))
     }
 
@@ -154,7 +154,7 @@ impl SphereBand {
     pub(crate) fn find<S: Simd>(
         &mut self,
         simd: S,
-        sphere: &SphereConstants,
+        sphere: &SphereConstants<'_>,
         first: u32,
         grid: Grid,
     ) {
@@ -182,12 +182,13 @@ impl SphereBand {
                 self.facing.certain |= certain.to_bitmask() << lane;
             }
             if let Some(highlight) = &sphere.highlight {
+                let threshold = sphere.lighting.highlight.threshold;
                 // |n − h| is no less than its component along the axis of m.
-                let is_near = (m * sphere.inverse_radius - highlight.halfway[1])
+                let is_near = (m * sphere.inverse_radius - sphere.lighting.highlight.halfway[1])
                     .abs()
                     .simd_le(highlight.max_distance);
                 if is_near.any_true() {
-                    let (inside, certain) = rows.arc(&highlight.form, sphere.threshold, shadeable);
+                    let (inside, certain) = rows.arc(&highlight.form, threshold, shadeable);
                     let mut bright = shadeable;
                     if highlight.form.is_concave == Some(true) {
                         bright = select::<S>(certain, inside, shadeable);
@@ -204,7 +205,7 @@ impl SphereBand {
 /// A sphere in as many rows as there are lanes.
 struct RowLanes<'b, S: Simd> {
     simd: S,
-    sphere: &'b SphereConstants,
+    sphere: &'b SphereConstants<'b>,
     grid: Grid,
     /// m of each row.
     m: S::f64s,

@@ -30,7 +30,7 @@ pub(crate) struct Hits<V> {
 /// A sphere in a row, in the arithmetic of a policy.
 pub(crate) struct RowShader<'s, S: Simd, P: Policy<S>> {
     simd: S,
-    sphere: &'s SphereConstants,
+    sphere: &'s SphereConstants<'s>,
     /// m of the row.
     m: f64,
     /// R² − m².
@@ -39,7 +39,7 @@ pub(crate) struct RowShader<'s, S: Simd, P: Policy<S>> {
 
 impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, sphere: &'s SphereConstants, y: f64) -> Self {
+    pub(crate) fn new(simd: S, sphere: &'s SphereConstants<'s>, y: f64) -> Self {
         let m = sphere.m.at(y);
         RowShader {
             simd,
@@ -94,7 +94,8 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                 }
                 if let Some(highlight) = &self.sphere.highlight {
                     let halfway = self.value(&highlight.form, &self.hits(x));
-                    let is_bright = halfway.simd_gt(P::Lane::of(self.sphere.threshold));
+                    let is_bright =
+                        halfway.simd_gt(P::Lane::of(self.sphere.lighting.highlight.threshold));
                     bright |= is_bright.to_bitmask() << (half * lanes);
                 }
             }
@@ -137,7 +138,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                 (yes, no)
             }
             Caster::Sphere(cylinder) => {
-                let [x, y, z, before] = &cylinder.forms(self.sphere);
+                let [x, y, z, before] = &cylinder.forms(self.sphere.lighting);
                 let [x, y, z] = [
                     self.value(x, hits),
                     self.value(y, hits),
@@ -218,19 +219,20 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         let (simd, of) = (self.simd, P::Lane::of);
         // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
         // is bright.
-        let [q, m, s] = highlight.halfway;
+        let view = &self.sphere.lighting.highlight;
+        let [q, m, s] = view.halfway;
         let inverse = splat::<S, P>(simd, self.sphere.inverse_radius);
         let q = P::product_plus(hits.q, inverse, splat::<S, P>(simd, -q));
         let m = self.m * self.sphere.inverse_radius - m;
         let s = P::product_plus(hits.s, inverse, splat::<S, P>(simd, -s));
         let squared = q * q + s * s + of(m * m);
-        let one_minus = (squared * of(0.5)).min(of(self.sphere.one_minus_threshold));
-        let power = power::<S, P>(simd, one_minus, self.sphere.exponent);
+        let one_minus = (squared * of(0.5)).min(of(view.one_minus_threshold));
+        let power = power::<S, P>(simd, one_minus, view.exponent);
         let power = P::where_bright(simd, power, bright);
         let [constant, slope] = highlight.errors[zone];
         // xⁿ⁻¹ is at most 2xⁿ for x ≥ 1/2, and at most 2¹⁻ⁿ for smaller x; the factor 1.06 is that
         // of max(X, x)ⁿ⁻¹ over xⁿ⁻¹.
-        let steep = power * of(2.0 * 1.06) + of(1.06 * highlight.smallest_power);
+        let steep = power * of(2.0 * 1.06) + of(1.06 * view.smallest_power);
         P::within(power, (one_minus * of(slope) + of(constant)) * steep)
     }
 }

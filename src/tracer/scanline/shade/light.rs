@@ -56,6 +56,8 @@ pub(crate) struct Lighting {
 
 /// The highlight of all spheres of a view.
 pub(crate) struct Highlight {
+    /// h, of length 1; 0 where there is no highlight.
+    pub(crate) halfway: [f64; 3],
     /// n.
     pub(crate) exponent: u32,
     /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
@@ -86,6 +88,7 @@ impl Lighting {
             let along = moment.iter().map(|vector| of(vector[axis]));
             along.fold(0.0, f64::max)
         };
+        let halfway = shading.halfway().map(|h| axes.of(h));
         let exponent = shading.exponent();
         let n = f64::from(exponent);
         // (1 − x)ⁿ ≤ e^−nx.
@@ -100,8 +103,9 @@ impl Lighting {
                 let magnitude = largest(axis, |x| x.value().abs());
                 (magnitude, largest(axis, Bounded::error))
             }),
-            halfway: shading.halfway().map(|h| axes.of(h)),
+            halfway,
             highlight: Highlight {
+                halfway: halfway.unwrap_or([zero; 3]).map(Bounded::value),
                 exponent,
                 threshold,
                 one_minus_threshold,

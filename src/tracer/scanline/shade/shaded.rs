@@ -9,7 +9,7 @@ use crate::tracer::scanline::write::paint::PaintNumber;
 pub(crate) struct ShadedSphere<'f> {
     /// Its number among the shaded spheres of the frame.
     pub(crate) number: usize,
-    pub(crate) constants: SphereConstants,
+    pub(crate) constants: SphereConstants<'f>,
     pub(crate) casters: &'f [Caster<'f>],
     /// The decision of its pixels in the light.
     pub(crate) in_light: Decision,

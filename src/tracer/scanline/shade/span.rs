@@ -101,7 +101,7 @@ impl SpanShader {
                 let casters = shaded.casters.iter().enumerate();
                 let near = casters.filter(|(number, caster)| {
                     sphere.casters & bit_of(*number) != 0
-                        && !caster.misses(&shaded.constants, &hits)
+                        && !caster.misses(shaded.constants.lighting, &hits)
                 });
                 casters_near.extend(near.map(|(number, _)| number));
             }

@@ -111,19 +111,15 @@ fn sizes(factors: &[Bounded; 3]) -> [(f64, f64); 3] {
 pub(crate) struct SphereHighlight {
     /// n·h.
     pub(crate) form: LinearForm,
-    /// h, of length 1, in the axes of q, m and s.
-    pub(crate) halfway: [f64; 3],
     /// In each zone, a bound on n times the error of 1 − n·h: a constant and a factor of 1 − n·h.
     pub(crate) errors: [[f64; 2]; ZONES],
-    /// 2¹⁻ⁿ.
-    pub(crate) smallest_power: f64,
     /// The largest difference of m/R and that of h at which there is a highlight.
     pub(crate) max_distance: f64,
 }
 
-/// Bounds on q, m and s of any pixel.
-#[derive(Clone, Copy)]
-struct HitBounds {
+/// The centre of a sphere, and bounds on q, m and s of any pixel.
+pub(crate) struct HitBounds {
+    pub(crate) center: Vector<Bounded>,
     /// A bound on the magnitude of each.
     radius: f64,
     /// Bounds on their errors; that of s in each zone.
@@ -133,6 +129,26 @@ struct HitBounds {
 }
 
 impl HitBounds {
+    pub(crate) fn new(sphere: &Sphere<Bounded>, outline: &Ellipse) -> HitBounds {
+        let radius = sphere.radius.at_most() * INFLATION;
+        // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
+        let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * INFLATION;
+        // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference
+        // round.
+        let squared =
+            outline.chord_error + (2.0 * radius + q_error) * q_error + 2.0 * U * radius * radius;
+        // |√A − √a| ≤ |A − a|/√a, and the root rounds.
+        let s_errors =
+            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * INFLATION);
+        HitBounds {
+            center: sphere.center,
+            radius,
+            q_error,
+            m_error: outline.m_error,
+            s_errors,
+        }
+    }
+
     /// The form vector · n, of a vector in the axes of q, m and s.
     fn form(&self, factors: [Bounded; 3]) -> LinearForm {
         LinearForm {
@@ -146,12 +162,12 @@ impl HitBounds {
     }
 
     /// A bound on the magnitude of a form without a constant, whose factors have these sizes.
-    fn magnitude(&self, [q, m, s]: [(f64, f64); 3]) -> f64 {
+    pub(crate) fn magnitude(&self, [q, m, s]: [(f64, f64); 3]) -> f64 {
         (q.0 + m.0 + s.0) * self.radius
     }
 
     /// In each zone, a bound on the error of such a form.
-    fn errors(&self, sizes: [(f64, f64); 3]) -> [f64; ZONES] {
+    pub(crate) fn errors(&self, sizes: [(f64, f64); 3]) -> [f64; ZONES] {
         // AB − ab = α B + a β + …; three products and three sums round, each by less than u of the
         // sum of all magnitudes.
         let carried = |(magnitude, factor_error): (f64, f64), error: f64| {
@@ -162,6 +178,18 @@ impl HitBounds {
         let others = carried(q, self.q_error) + carried(m, self.m_error) + rounded;
         self.s_errors
             .map(|error| (others + carried(s, error)) * INFLATION)
+    }
+
+    /// The distance of the hit from the border of a half-space, positive inside, in units of the
+    /// length of the half-space's normal.
+    pub(crate) fn inside(
+        &self,
+        half_space: &HalfSpace<Bounded>,
+        lighting: &Lighting,
+    ) -> LinearForm {
+        let n = half_space.normal;
+        let form = self.form(lighting.axes.of(n));
+        form.plus(n.dot(self.center - half_space.at))
     }
 
     /// The highlight of a sphere of this radius, where `h` is that of the view.
@@ -201,16 +229,14 @@ impl HitBounds {
         });
         SphereHighlight {
             form: self.form(h.map(|component| component / radius)),
-            halfway: h.map(Bounded::value),
             errors,
-            smallest_power: highlight.smallest_power,
             max_distance: (highlight.max_distance + part(self.m_error, h[1])) * INFLATION,
         }
     }
 }
 
 /// What the shading of a sphere depends on and all of its pixels share.
-pub(crate) struct SphereConstants {
+pub(crate) struct SphereConstants<'f> {
     /// c_x.
     pub(crate) center_x: f64,
     /// R².
@@ -219,27 +245,14 @@ pub(crate) struct SphereConstants {
     pub(crate) m: RowOffset,
     /// The smallest s² of each zone.
     pub(crate) min_squares: [f64; ZONES],
-    bounds: HitBounds,
-    pub(crate) center: Vector<Bounded>,
-    /// The factors of q, m and s in n × l, and in −n·l, with n of the radius's length and an l of
-    /// any length.
-    pub(crate) moment: [[f64; 3]; 4],
-    /// A bound on the error of these four.
-    pub(crate) moment_error: f64,
-    /// A bound on their magnitudes.
-    pub(crate) moment_magnitude: f64,
+    /// What all spheres of the view share.
+    pub(crate) lighting: &'f Lighting,
     /// n·l, with n and l of length 1.
     pub(crate) n_dot_l: LinearForm,
     /// 1/R.
     pub(crate) inverse_radius: f64,
     /// `None` where there is no highlight.
     pub(crate) highlight: Option<SphereHighlight>,
-    /// n, the exponent of the highlight.
-    pub(crate) exponent: u32,
-    /// Below this n·h, (n·h)ⁿ is below 2⁻⁵⁹.
-    pub(crate) threshold: f64,
-    /// 1 − n·h at the threshold.
-    pub(crate) one_minus_threshold: f64,
     pub(crate) color: Coefficients,
     /// In each zone, a bound on the error of any channel without that of the highlight.
     pub(crate) errors: [f64; ZONES],
@@ -262,31 +275,16 @@ pub(crate) struct Coefficients {
 /// that begins with any channel.
 pub(crate) type Cycle = [f64; 8 + 2];
 
-impl SphereConstants {
-    /// `color` is the sphere's colour, in the mirror times the reflectance.
+impl<'f> SphereConstants<'f> {
+    /// `bounds` are those of the sphere, `color` is its colour, in the mirror times the reflectance.
     pub(crate) fn new(
         sphere: &Sphere<Bounded>,
         outline: &Ellipse,
-        lighting: &Lighting,
+        bounds: &HitBounds,
+        lighting: &'f Lighting,
         color: Vector<Bounded>,
         has_shadows: bool,
-    ) -> SphereConstants {
-        let radius = sphere.radius.at_most() * INFLATION;
-        // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
-        let q_error = (sphere.center.x.error() * (1.0 + U) + U * radius) * INFLATION;
-        // s² = (R² − m²) − q²: |(q + ε)² − q²| ≤ 2|q|ε + ε², and the square and the difference
-        // round.
-        let squared =
-            outline.chord_error + (2.0 * radius + q_error) * q_error + 2.0 * U * radius * radius;
-        // |√A − √a| ≤ |A − a|/√a, and the root rounds.
-        let s_errors =
-            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * INFLATION);
-        let bounds = HitBounds {
-            radius,
-            q_error,
-            m_error: outline.m_error,
-            s_errors,
-        };
+    ) -> SphereConstants<'f> {
         let to_light = lighting.to_light_unit.map(|part| part / sphere.radius);
         let n_dot_l = bounds.form(to_light);
         let highlight = &lighting.highlight;
@@ -332,25 +330,18 @@ impl SphereConstants {
             squared_radius: outline.squared_radius,
             m: outline.m,
             min_squares: ZONE_DIVISORS
-                .map(|divisor| (radius / divisor) * (radius / divisor) * INFLATION),
-            moment: lighting.moment,
-            moment_error: bounds.errors(lighting.moment_sizes)[ZONES - 1],
-            moment_magnitude: bounds.magnitude(lighting.moment_sizes),
-            bounds,
-            center: sphere.center,
+                .map(|divisor| (bounds.radius / divisor) * (bounds.radius / divisor) * INFLATION),
+            lighting,
             n_dot_l,
             inverse_radius: 1.0 / sphere.radius.value(),
             highlight: sphere_highlight,
-            exponent: highlight.exponent,
-            threshold: highlight.threshold,
-            one_minus_threshold: highlight.one_minus_threshold,
             color: Coefficients {
                 ambient: cycle(0),
                 diffuse: cycle(1),
                 specular: cycle(2),
             },
             errors,
-            is_small: radius < SMALL,
+            is_small: bounds.radius < SMALL,
             has_shadows,
         }
     }
@@ -373,17 +364,5 @@ impl SphereConstants {
             q,
             s: (s(m_squares.1, q_squares.1), s(m_squares.0, q_squares.0)),
         }
-    }
-
-    /// The distance of the hit from the border of a half-space, positive inside, in units of the
-    /// length of the half-space's normal.
-    pub(crate) fn inside(
-        &self,
-        half_space: &HalfSpace<Bounded>,
-        lighting: &Lighting,
-    ) -> LinearForm {
-        let n = half_space.normal;
-        let form = self.bounds.form(lighting.axes.of(n));
-        form.plus(n.dot(self.center - half_space.at))
     }
 }

@@ -55,8 +55,8 @@ fn check(
         let y = frame.grid.coordinate(row);
         let hits = shaded.constants.hit_box((x[0], x[1]), (y, y));
         let casters = shaded.casters.iter().enumerate();
-        let casters =
-            casters.filter(|(_, caster)| !only_near || !caster.misses(&shaded.constants, &hits));
+        let casters = casters
+            .filter(|(_, caster)| !only_near || !caster.misses(shaded.constants.lighting, &hits));
         scratch.casters.extend(casters.map(|(number, _)| number));
         counts.missing += shaded.casters.len() - scratch.casters.len();
         let mut run = Run {
