@@ -111,6 +111,17 @@ impl<'f, R: Real> Picture<'f, R> {
         extents: &Extents<'f>,
         allocator: &impl SliceAllocator<'f>,
     ) -> Self {
+        let view = |signs, extents, direct: Option<&View<'f, R>>| {
+            View::new(scene, transform, signs, extents, direct, allocator)
+        };
+        let direct = view(&signs.direct, extents.direct, None);
+        let mirror = |reflectance| {
+            let signs = signs.mirrored.as_ref()?;
+            Some(Mirror {
+                view: view(signs, extents.mirrored, Some(&direct)),
+                reflectance: R::exact(reflectance),
+            })
+        };
         let seen = extents.surface.as_ref().zip(extents.casters_on_surface);
         let surface = match (scene.surface(), transform.surface(scene), seen) {
             (Some(described), Some(square), Some((extent, casters))) if stage >= Stage::Shadow => {
@@ -119,10 +130,7 @@ impl<'f, R: Real> Picture<'f, R> {
                     extent: *extent,
                     casters,
                     color: Vector::exact(described.color),
-                    mirror: signs.mirrored.as_ref().map(|signs| Mirror {
-                        view: View::new(scene, transform, signs, extents.mirrored, true, allocator),
-                        reflectance: R::exact(described.reflectance),
-                    }),
+                    mirror: mirror(described.reflectance),
                 })
             }
             _ => None,
@@ -132,14 +140,7 @@ impl<'f, R: Real> Picture<'f, R> {
             stage,
             size,
             transform: *transform,
-            view: View::new(
-                scene,
-                transform,
-                &signs.direct,
-                extents.direct,
-                false,
-                allocator,
-            ),
+            view: direct,
             surface,
         }
     }

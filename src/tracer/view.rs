@@ -59,15 +59,16 @@ impl SolidKinds {
 }
 
 impl<'f, R: Real> View<'f, R> {
-    /// The scene itself, or in the mirror.
+    /// The scene itself, or in the mirror: then `direct` is the scene itself.
     pub(super) fn new(
         scene: &'f Scene,
         transform: &ViewTransform<R>,
         signs: &ViewSigns<'f>,
         extents: ExtentsOfSolids<'f>,
-        mirrored: bool,
+        direct: Option<&View<'f, R>>,
         allocator: &impl SliceAllocator<'f>,
     ) -> Self {
+        let mirrored = direct.is_some();
         let mirror_height = transform.surface_height(scene).filter(|_| mirrored);
         let to_light = transform.direction_to_light(scene, mirrored);
         let halfway = match signs.halfway {
@@ -82,19 +83,23 @@ impl<'f, R: Real> View<'f, R> {
             }
             Halfway::Computed => Some(halfway(&eye_direction(), &to_light)),
         };
-        let spheres =
-            scene
-                .spheres()
-                .iter()
-                .zip(&scene.facts().spheres)
-                .map(|(sphere, &support)| Sphere {
-                    center: reflect(transform.point(sphere.center), mirror_height),
+        let spheres = match direct {
+            None => {
+                let spheres = scene.spheres().iter().zip(&scene.facts().spheres);
+                allocator.slice_of(spheres.map(|(sphere, &support)| Sphere {
+                    center: transform.point(sphere.center),
                     radius: R::exact(sphere.radius) * transform.scale,
                     support,
-                });
+                }))
+            }
+            Some(direct) => allocator.slice_of(direct.spheres.iter().map(|sphere| Sphere {
+                center: reflect(sphere.center, mirror_height),
+                ..*sphere
+            })),
+        };
         View {
             extents,
-            spheres: allocator.slice_of(spheres),
+            spheres,
             tetrahedra: TetrahedraInView::new(
                 scene,
                 transform,

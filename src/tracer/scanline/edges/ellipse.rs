@@ -5,7 +5,7 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
-use crate::tracer::line::{Direction, Line};
+use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::grid::{Grid, in_columns};
@@ -56,27 +56,29 @@ impl RowOffset {
 }
 
 /// Parallel lines through the points of a plane, one a pixel.
-pub(crate) struct ParallelLines<'s> {
-    plane: &'s PixelPlane,
-    direction: Direction<Bounded>,
-    /// The change of a line's moment where X grows by 1.
-    per_x: Vector<Bounded>,
-    /// The squared length of `per_x`.
-    squared_per_x: Bounded,
-    /// The direction of the shortest moment of a row, over the length of `per_x`.
-    shortest: Vector<Bounded>,
+pub(crate) struct ParallelLines {
+    /// The plane's origin.
+    origin: Vector<Bounded>,
+    /// The product of this vector with a sphere's centre, seen from the origin, is the middle of
+    /// its chord at Y = 0.
+    middle_axis: Vector<Bounded>,
+    /// That with this vector is m at Y = 0.
+    m_axis: Vector<Bounded>,
     /// The change of the chord's middle where Y grows by 1.
     middle_per_y: Bounded,
     /// The change of m where Y grows by 1.
     m_per_y: Bounded,
+    /// The square of half the longest chord of a sphere of radius 1.
+    squared_radius: Bounded,
     /// The product of this vector with a point, seen from the plane's origin, is Y of the pixel
     /// whose line passes through the point.
     row_axis: Vector<Bounded>,
 }
 
-impl<'s> ParallelLines<'s> {
-    pub(crate) fn new(plane: &'s PixelPlane, direction: Direction<Bounded>) -> Self {
+impl ParallelLines {
+    pub(crate) fn new(plane: &PixelPlane, direction: Direction<Bounded>) -> Self {
         let l = direction.vector;
+        // The moment of a line about a centre c is (o − c) × l at X = Y = 0, and changes by these.
         let per_x = plane.per_x.cross(l);
         let per_y = plane.per_y.cross(l);
         let squared_per_x = per_x.squared_length();
@@ -84,12 +86,12 @@ impl<'s> ParallelLines<'s> {
         // `per_x`.
         let shortest = l.cross(per_x);
         let shortest = shortest.divided_by(shortest.length() * squared_per_x.sqrt());
+        // −((o − c) × l)·v = (c − o)·(l × v).
         ParallelLines {
-            plane,
-            direction,
-            per_x,
-            squared_per_x,
-            shortest,
+            origin: plane.origin,
+            middle_axis: l.cross(per_x).divided_by(squared_per_x),
+            m_axis: shortest.cross(l),
+            squared_radius: direction.squared_length / squared_per_x,
             middle_per_y: -(per_y.dot(per_x) / squared_per_x),
             m_per_y: per_y.dot(shortest),
             row_axis: per_x.divided_by(plane.per_y.dot(per_x)),
@@ -98,7 +100,7 @@ impl<'s> ParallelLines<'s> {
 
     /// The rows of the pixels whose lines may meet the convex hull of some points.
     pub(crate) fn rows_through(&self, points: [Vector<Bounded>; 4], grid: Grid) -> (u32, u32) {
-        let y = points.map(|point| (point - self.plane.origin).dot(self.row_axis));
+        let y = points.map(|point| (point - self.origin).dot(self.row_axis));
         let low = y.map(Bounded::at_least).into_iter();
         let high = y.map(Bounded::at_most).into_iter();
         grid.between(
@@ -109,16 +111,11 @@ impl<'s> ParallelLines<'s> {
 
     /// The pixels whose lines meet a sphere: |(p − c) × l|² ≤ |l|² R².
     pub(crate) fn meet(&self, sphere: &Sphere<Bounded>, grid: Grid) -> Ellipse {
-        let moment = sphere.moment(&Line {
-            origin: self.plane.origin,
-            direction: self.direction,
-            origin_support: None,
-        });
-        let middle = -(moment.dot(self.per_x) / self.squared_per_x);
+        let center = sphere.center - self.origin;
         Ellipse::new(
-            (middle, self.middle_per_y),
-            (moment.dot(self.shortest), self.m_per_y),
-            self.direction.squared_length * sphere.radius.squared() / self.squared_per_x,
+            (center.dot(self.middle_axis), self.middle_per_y),
+            (center.dot(self.m_axis), self.m_per_y),
+            self.squared_radius * sphere.radius.squared(),
             grid,
         )
     }
