@@ -37,7 +37,7 @@ impl SpanShader {
         // Its columns would take longer than its pixels.
         if shaded.constants.is_small && writer.precision == Precision::Certified {
             self.shade_run(writer, columns, shaded, None, in_shadow);
-            writer.decide(self.scratch.doubts.drain(..), pixels);
+            self.decide_doubts(writer, pixels);
             return;
         }
         let sphere = self.cache.of(shaded, writer.row, writer.level, writer.grid);
@@ -71,6 +71,11 @@ impl SpanShader {
                 }
             }
         }
+        self.decide_doubts(writer, pixels);
+    }
+
+    /// Decides the columns left in doubt.
+    fn decide_doubts(&mut self, writer: &mut RowWriter<'_>, pixels: &impl Pixels) {
         if !self.scratch.doubts.is_empty() {
             writer.decide(self.scratch.doubts.drain(..), pixels);
         }
