@@ -27,6 +27,7 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{HitBounds, SphereConstants};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
+use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 use crate::tracer::view_tetrahedra::TetrahedronInView;
 
@@ -42,6 +43,9 @@ pub(crate) fn prepare_solids<'f>(
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let appearances = Appearances::new(picture, view, mirrored);
     let sides = collect(arena, outlines.all.iter().map(|solid| solid.side));
+    // In short loops, the processor reads ahead of what lies in another order.
+    let colors = numbers.iter().map(|&number| picture.solid_color(number));
+    let colors = collect(arena, colors);
     let is_late = appearances.has_shadows
         && outlines.face_shadows(picture.scene, parts.grid) >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
@@ -53,7 +57,7 @@ pub(crate) fn prepare_solids<'f>(
                 let number = parts.late_faces - 1;
                 Appearance::LateFaces(arena.alloc(LateFaces::new(number, solid.faces(), t)))
             }
-            _ => appearances.of(&solid, parts),
+            _ => appearances.of(&solid, colors[index.0 as usize], parts),
         };
         let kind = if mirrored {
             RegionKind::Mirrored(index)
@@ -132,10 +136,15 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
     }
 
     /// The appearance of a solid, whose regions and paints are added.
-    fn of(&self, solid: &Outlined<'f>, parts: &mut Builder<'f, '_>) -> Appearance<'f> {
+    fn of(
+        &self,
+        solid: &Outlined<'f>,
+        color: Vector<Bounded>,
+        parts: &mut Builder<'f, '_>,
+    ) -> Appearance<'f> {
         match (self.view.solid(solid.number), solid.outline.ellipse()) {
             (Solid::Sphere(sphere), Some(outline)) => {
-                self.sphere(solid.number, sphere, outline, parts)
+                self.sphere(solid.number, sphere, (outline, color), parts)
             }
             // The outline of a sphere is an ellipse.
             (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
@@ -162,7 +171,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         &self,
         number: usize,
         sphere: &Sphere<Bounded>,
-        outline: &Ellipse,
+        (outline, color): (&Ellipse, Vector<Bounded>),
         parts: &mut Builder<'f, '_>,
     ) -> Appearance<'f> {
         let arena = parts.arena;
@@ -170,7 +179,6 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         if self.picture.stage == Stage::Spheres {
             return Appearance::Flat(paint(false));
         }
-        let color = self.picture.solid_color(number);
         let color = if self.mirrored {
             self.picture.reflected(color)
         } else {
