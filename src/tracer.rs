@@ -100,7 +100,7 @@ pub struct Tracer {
     progress: Progress,
     tally: Tally,
     /// Only `get_mut` is used: the mutex makes `Tracer` `Sync`, so that threads can explain pixels.
-    arena: Mutex<Arena>,
+    arena: Box<Mutex<Arena>>,
     /// The rows of the frame that [`Tracer::retrace`] traced last.
     history: Vec<RowHistory>,
     /// The number of that frame, or 0.
@@ -125,7 +125,7 @@ impl Tracer {
             frame_number: 0,
             progress: Progress::default(),
             tally: Tally::default(),
-            arena: Mutex::default(),
+            arena: Box::default(),
         })
     }
 
