@@ -63,7 +63,7 @@ pub(crate) struct EdgeTable<'f> {
 }
 
 /// The most rows of a low region.
-const MAX_LOW: u32 = 16;
+const MAX_LOW: u32 = 24;
 
 /// Whether a region with these rows is low: it leaves the active edges as soon as it has entered
 /// them.
