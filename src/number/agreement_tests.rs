@@ -30,6 +30,8 @@ enum Step {
     Add(usize, usize),
     Subtract(usize, usize),
     Multiply(usize, usize),
+    /// The sum of three products, some of them with numbers that are known exactly.
+    SumOfProducts(usize, usize),
     Divide(usize, usize),
     /// The root of a number that is known exactly.
     RootOf(f64),
@@ -44,7 +46,7 @@ fn steps(random: &mut Random) -> Vec<Step> {
     for count in 0..14 {
         let a = random.below(count.max(1));
         let b = random.below(count.max(1));
-        steps.push(match random.below(10) {
+        steps.push(match random.below(11) {
             _ if count < 4 => Step::Exact(number(random)),
             0 => Step::Sine(number(random)),
             1 if count % 2 == 0 => Step::Cosine(number(random)),
@@ -53,6 +55,7 @@ fn steps(random: &mut Random) -> Vec<Step> {
             4 | 5 => Step::Subtract(a, b),
             6 | 7 => Step::Multiply(a, b),
             8 => Step::Root(a, b),
+            9 => Step::SumOfProducts(a, b),
             _ if count % 2 == 0 => Step::Divide(a, b),
             _ => Step::Power(a, [1, 2, 7, 1000][random.below(4)]),
         });
@@ -70,6 +73,10 @@ fn compute<R: Real>(steps: &[Step]) -> Vec<R> {
             Step::Add(a, b) => values[a] + values[b],
             Step::Subtract(a, b) => values[a] - values[b],
             Step::Multiply(a, b) => values[a] * values[b],
+            Step::SumOfProducts(a, b) => {
+                let (a, b) = (values[a], values[b]);
+                R::sum_of_products([a, b, values[0]], [b, values[1], a])
+            }
             Step::Divide(a, b) => {
                 // Not 0, and not well known.
                 let cube = values[b].squared() + R::exact(0.125);

@@ -99,17 +99,9 @@ pub(super) fn bucketed<T: Copy + Default>(
     (all, starts)
 }
 
-/// A slice of at most so many items does not grow while they are collected.
-const FEW: usize = 8;
-
 /// A slice of all items, however many there are.
 pub(super) fn collect<T>(arena: &Bump, items: impl IntoIterator<Item = T>) -> &[T] {
-    // A slice that grows is copied. Room that is not needed is given back.
-    let items = items.into_iter();
-    let (least, most) = items.size_hint();
-    let expected = most.map_or(least, |most| most.min(FEW).max(least));
-    let mut all = Vec::with_capacity_in(expected, arena);
+    let mut all = Vec::new_in(arena);
     all.extend(items);
-    all.shrink_to_fit();
     all.into_bump_slice()
 }

@@ -58,7 +58,18 @@ vertices = [[0.0, -0.25, 0.25], [0.625, -0.125, 0.25], [0.25, 0.5, 0.25], [0.25,
 color = [0.5, 0.25, 0.5]
 ";
 
-const SCENES: [&str; 10] = [
+/// Two faces in one plane: the first in the scene is seen, though rows reach the other one before.
+const FACES_IN_ONE_PLANE: &str = "# Faces in one plane
+light = { direction = [0.0, -1.0, -0.25] }
+[[tetrahedron]]
+vertices = [[-0.25, 0.25, 0.25], [0.25, 0.25, 0.25], [0.0, 0.75, 0.25], [0.0, 0.375, -0.25]]
+color = [0.5, 0.5, 0.5]
+[[tetrahedron]]
+vertices = [[-0.5, -0.75, 0.25], [0.5, -0.75, 0.25], [0.0, 1.0, 0.25], [0.0, 0.0, -0.25]]
+color = [0.5, 0.25, 0.5]
+";
+
+const SCENES: [&str; 11] = [
     "",
     include_str!("../../../tests/scenes/crossing_spheres.toml"),
     include_str!("../../../tests/scenes/crossing_tetrahedra.toml"),
@@ -69,6 +80,7 @@ const SCENES: [&str; 10] = [
     include_str!("../../../tests/scenes/spheres_in_the_floor.toml"),
     SHADOW_IN_SHADOW,
     BELOW_THE_MIRROR,
+    FACES_IN_ONE_PLANE,
 ];
 
 /// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
