@@ -290,3 +290,54 @@ impl<'f> Extents<'f> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    const SIZE: u32 = 100;
+
+    fn random_extents(random: &mut Random, count: usize) -> Vec<SolidExtent> {
+        let mut range = || {
+            let from = random.below(SIZE as usize) as u32;
+            (from, (from + random.below(20) as u32).min(SIZE))
+        };
+        let extents = (0..count).map(|_| Extent {
+            columns: range(),
+            rows: range(),
+        });
+        let entry = |solid: usize| Entry {
+            nearest: (solid * 7 % count) as f64,
+            farthest: count as f64,
+        };
+        let solids = extents.enumerate();
+        solids
+            .map(|(solid, extent)| SolidExtent {
+                extent,
+                entry: entry(solid),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn tiles_list_the_solids_that_reach_them_nearest_first_in_each_frame() {
+        let mut random = Random::new();
+        let mut tiles = Tiles::default();
+        // Each frame reuses the memory of the one before.
+        for count in [300, 10, 40, 500, 17, 16, 300] {
+            let all = random_extents(&mut random, count);
+            tiles.find(&all, SIZE);
+            for pixel in (0..SIZE).flat_map(|row| (0..SIZE).map(move |column| (column, row))) {
+                let holds = |solid: &usize| all[*solid].extent.holds(pixel.0, pixel.1);
+                let mut expected: Vec<usize> = (0..count).filter(holds).collect();
+                expected.sort_by_key(|&solid| solid * 7 % count);
+                let listed = tiles.solids_at(pixel).iter();
+                let listed = listed.map(|solid| usize::from(*solid));
+                assert_eq!(listed.filter(holds).collect::<Vec<_>>(), expected);
+            }
+            let starts = tiles.starts.iter().copied();
+            assert_eq!(starts.max(), Some(tiles.solids.len() as u32));
+        }
+    }
+}

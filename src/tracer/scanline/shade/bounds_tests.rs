@@ -83,6 +83,8 @@ struct Found {
     highlight: Largest,
     /// The forms of shadows.
     forms: Largest,
+    /// How far hits are inside of shadow cylinders.
+    cylinders: Largest,
     cache: ColumnCounts,
 }
 
@@ -160,7 +162,11 @@ struct Case<'c> {
     grid: Grid,
     /// Another sphere's centre.
     other: Vector<DoubleDouble>,
-    /// The forms of the other sphere's shadow: its moment, and whether it is before a pixel.
+    /// Its radius.
+    other_radius: DoubleDouble,
+    /// Its shadow.
+    cylinder: ShadowCylinder,
+    /// The forms of the shadow: the moment, and whether the other sphere is before a pixel.
     forms: [LinearForm; 4],
 }
 
@@ -234,6 +240,14 @@ impl Case<'_> {
                     let computed = forms[i].as_slice()[lane];
                     found.forms.note(truth, computed, self.forms[i].error);
                 }
+                let radius = shading.to_light.squared_length * self.other_radius.squared();
+                let [x, y, z] = [0, 1, 2].map(|i| forms[i].as_slice()[lane]);
+                let cylinder = &self.cylinder;
+                found.cylinders.note(
+                    radius - moment.squared_length(),
+                    cylinder.squared_radius - (x * x + y * y + z * z),
+                    cylinder.error,
+                );
 
                 let light = shading.ambient() + terms.diffuse + terms.specular;
                 let (color, specular) = (self.color.times(light), self.color.times(terms.specular));
@@ -283,6 +297,8 @@ fn check_view(
             sphere: &true_view.spheres[index],
             color: truth.0.solid_color(index) * truth.2,
             forms: cylinder.forms(&lighting),
+            cylinder,
+            other_radius: true_view.spheres[other].radius,
             constants,
             grid,
             other: true_view.spheres[other].center,
@@ -337,6 +353,7 @@ fn every_error_is_within_its_bound() {
     }
     found.light.expect("n·l");
     found.forms.expect("other linear forms");
+    found.cylinders.expect("shadow cylinders");
     found.dull.expect("channels");
     found.highlight.expect("channels with a highlight");
     found.cache.expect();
