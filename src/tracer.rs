@@ -6,11 +6,11 @@
 //!
 //! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show,
 //!   points and rays;
-//! - `view_space`, `view_transform`, `view_signs`, `view_tetrahedra`, `view`: view space, into which the scene and its
-//!   mirror image are turned by α;
+//! - `view_space`, `view_transform`, `view_signs`, `view_tetrahedra`, `view`: view space, into which
+//!   the scene and its mirror image are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
-//! - `extent`, `surface_casters`: which solids a pixel need not be tested against;
+//! - `extent`, `tiles`, `surface_casters`: which solids a pixel need not be tested against;
 //! - `pixel`: what a pixel shows: the definition of the picture;
 //! - `ladder`: a pixel in f64 with bounds; in doubt, in double-doubles; still in doubt, in
 //!   arbitrary precision;
@@ -56,6 +56,7 @@ mod surface_casters;
 mod tally;
 mod target;
 mod tetrahedron;
+mod tiles;
 mod vector;
 mod view;
 mod view_signs;

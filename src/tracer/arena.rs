@@ -8,8 +8,8 @@ use bumpalo::Bump;
 use bumpalo::collections::Vec;
 use bumpalo_herd::{Herd, Member};
 
-use super::extent::Tiles;
 use super::pool::lock;
+use super::tiles::Tiles;
 
 /// The memory of one frame after the other. After the first few, it does not grow any more.
 #[derive(Default)]

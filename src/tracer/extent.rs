@@ -2,6 +2,7 @@
 
 use super::arena::{Arena, OnDemand, collect};
 use super::surface_casters::SurfaceCasterLookup;
+use super::tiles::Tiles;
 use super::vector::Vector;
 use super::view_space::{
     EYE_SQUARED, EYE_Y, EYE_Z, PIXEL, along_eye_ray, coordinate, number_at, reflect,
@@ -37,21 +38,6 @@ pub(super) struct ExtentsOfSolids<'f> {
     tiles: &'f OnDemand<Tiles>,
 }
 
-/// Which solids reach each tile of the screen.
-#[derive(Default)]
-pub(super) struct Tiles {
-    /// Pixels along a side of a tile.
-    side: u32,
-    /// The number of tiles side by side.
-    per_row: u32,
-    /// For each tile, the index of its first solid in `solids`; then the length of `solids`.
-    starts: Vec<u32>,
-    /// The solids of each tile, the nearest first.
-    solids: Vec<u16>,
-    /// All solids, the farthest first.
-    order: Vec<u16>,
-}
-
 /// The extent of a solid, and how near it is.
 struct SolidExtent {
     extent: Extent,
@@ -64,70 +50,6 @@ struct SolidExtent {
 pub(super) struct Entry {
     pub(super) nearest: f64,
     pub(super) farthest: f64,
-}
-
-/// Tiles in a row, if there are more than [`MAX_UNTILED`] solids.
-const TILES: u32 = 32;
-/// So many solids share one tile.
-const MAX_UNTILED: usize = 16;
-
-impl Tiles {
-    /// Finds the tiles of a frame.
-    fn find(&mut self, all: &[SolidExtent], size: u32) {
-        let Tiles {
-            starts,
-            solids,
-            order,
-            ..
-        } = self;
-        let tiles = if all.len() > MAX_UNTILED { TILES } else { 1 };
-        let side = size.div_ceil(tiles);
-        let per_row = size.div_ceil(side);
-        let reached = |SolidExtent { extent, .. }: &SolidExtent| {
-            let tiles = |(from, to): (u32, u32)| {
-                if from < to {
-                    from / side..to.div_ceil(side)
-                } else {
-                    0..0
-                }
-            };
-            let (columns, rows) = (tiles(extent.columns), tiles(extent.rows));
-            rows.flat_map(move |row| {
-                columns
-                    .clone()
-                    .map(move |column| (row * per_row + column) as usize)
-            })
-        };
-        starts.clear();
-        starts.resize((per_row * per_row) as usize + 1, 0);
-        for tile in all.iter().flat_map(reached) {
-            starts[tile] += 1;
-        }
-        let mut end = 0;
-        for start in starts.iter_mut() {
-            end += *start;
-            *start = end;
-        }
-        solids.resize(end as usize, 0);
-        // Each tile is filled from its end: the farthest first.
-        order.clear();
-        order.extend((0..all.len()).map(|solid| solid as u16));
-        let nearest = |solid: u16| all[usize::from(solid)].entry.nearest;
-        order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)));
-        for &solid in order.iter() {
-            for tile in reached(&all[usize::from(solid)]) {
-                starts[tile] -= 1;
-                solids[starts[tile] as usize] = solid;
-            }
-        }
-        (self.side, self.per_row) = (side, per_row);
-    }
-
-    /// The solids that reach the tile of a pixel.
-    fn solids_at(&self, (column, row): (u32, u32)) -> &[u16] {
-        let tile = (row / self.side * self.per_row + column / self.side) as usize;
-        &self.solids[self.starts[tile] as usize..self.starts[tile + 1] as usize]
-    }
 }
 
 impl<'f> ExtentsOfSolids<'f> {
@@ -157,11 +79,17 @@ impl<'f> ExtentsOfSolids<'f> {
     /// The solids that can be seen in a pixel, the nearest first.
     pub(super) fn at(&self, pixel: (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
         let (all, size) = (self.all, self.size);
-        let tiles = self.tiles.get(|tiles| tiles.find(all, size));
+        let tiles = self.tiles.get(|tiles| find_tiles(tiles, all, size));
         let solids = tiles.solids_at(pixel).iter();
         let solids = solids.map(|solid| usize::from(*solid));
         solids.filter(move |solid| all[*solid].extent.holds(pixel.0, pixel.1))
     }
+}
+
+/// Finds the tiles that solids reach.
+fn find_tiles(tiles: &mut Tiles, all: &[SolidExtent], size: u32) {
+    let extent = |solid: usize| [all[solid].extent.columns, all[solid].extent.rows];
+    tiles.find(all.len(), extent, |solid| all[solid].entry.nearest, size);
 }
 
 impl Extent {
@@ -327,7 +255,7 @@ mod tests {
         // Each frame reuses the memory of the one before.
         for count in [300, 10, 40, 500, 17, 16, 300] {
             let all = random_extents(&mut random, count);
-            tiles.find(&all, SIZE);
+            find_tiles(&mut tiles, &all, SIZE);
             for pixel in (0..SIZE).flat_map(|row| (0..SIZE).map(move |column| (column, row))) {
                 let holds = |solid: &usize| all[*solid].extent.holds(pixel.0, pixel.1);
                 let mut expected: Vec<usize> = (0..count).filter(holds).collect();
