@@ -33,6 +33,8 @@ mod random;
 mod renderers;
 #[path = "viewer/session.rs"]
 mod session;
+#[path = "viewer/shared_image.rs"]
+mod shared_image;
 #[path = "viewer/soak.rs"]
 mod soak;
 #[path = "viewer/window.rs"]

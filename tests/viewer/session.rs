@@ -1,5 +1,6 @@
 //! The program in a window on an X server, a keyboard for it, and eyes on its pixels.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use firsthit::{Image, Stage};
@@ -8,8 +9,8 @@ use x11rb::connection::Connection as _;
 use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConfigureWindowAux,
-    ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT,
-    KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, MapState, PropMode, Window, WindowClass,
+    ConnectionExt as _, CreateWindowAux, EventMask, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
+    MOTION_NOTIFY_EVENT, MapState, PropMode, Window, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -17,6 +18,7 @@ use x11rb::wrapper::ConnectionExt as _;
 
 use super::pixels::{Pixels, letterboxed, placed, traced, wait_to_show};
 use super::program::{Program, wait_for};
+use super::shared_image::SharedImage;
 use super::xvfb::Xvfb;
 
 pub const SHIFT: u32 = 0xffe1;
@@ -51,6 +53,7 @@ pub struct Session {
     pub connection: RustConnection,
     pub root: Window,
     pub window: Window,
+    image: OnceCell<SharedImage>,
     xvfb: Option<Xvfb>,
     pub folder: TempDir,
 }
@@ -87,6 +90,7 @@ impl Session {
             connection,
             root,
             window: x11rb::NONE,
+            image: OnceCell::new(),
             xvfb: Some(xvfb),
             folder,
         }
@@ -353,28 +357,10 @@ impl Session {
 
     /// What the window shows, if it can be read.
     pub fn pixels(&self) -> Option<Pixels> {
-        let (width, height) = self.size();
-        let image = self
-            .connection
-            .get_image(
-                ImageFormat::Z_PIXMAP,
-                self.window,
-                0,
-                0,
-                u16::try_from(width).unwrap(),
-                u16::try_from(height).unwrap(),
-                u32::MAX,
-            )
-            .unwrap()
-            .reply()
-            .ok()?;
-        // 24 bits deep, in 32 bits of little endian: blue first.
-        let bytes = image.data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]);
-        Some(Pixels {
-            width,
-            height,
-            bytes: bytes.collect(),
-        })
+        let shared = self
+            .image
+            .get_or_init(|| SharedImage::new(&self.connection));
+        shared.of(&self.connection, self.window, self.size())
     }
 
     /// Waits until the window shows the picture of N = `size`, `stage` and `alpha`, as it was
