@@ -10,15 +10,18 @@ use std::time::{Duration, Instant};
 
 use super::{DEADLINE, WATCH};
 
-/// Calls `probe` until it gives something, for as long as [`DEADLINE`].
+/// Calls `probe` until it gives something, for as long as [`DEADLINE`]: the more rarely the longer
+/// it takes, for many a probe reads a window, which is work.
 pub fn wait_for<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     loop {
         if let Some(found) = probe() {
             return found;
         }
-        assert!(start.elapsed() < DEADLINE, "waited in vain for {what}");
-        thread::sleep(Duration::from_millis(10));
+        let waited = start.elapsed();
+        assert!(waited < DEADLINE, "waited in vain for {what}");
+        let [shortest, longest] = [5, 30].map(Duration::from_millis);
+        thread::sleep((waited / 4).clamp(shortest, longest));
     }
 }
 
