@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -42,13 +43,22 @@ const OUTPUTS: [(&str, &[&str]); 7] = [
     ),
 ];
 
-/// A folder with what `compare` compares.
-fn folder() -> TempDir {
+/// What `compare` compares: two files, and what they hold.
+static COMPARED: LazyLock<[(&str, Vec<u8>); 2]> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    for (name, frame) in [("one.exr", 0), ("other.exr", 4)] {
+    [("one.exr", 0), ("other.exr", 4)].map(|(name, frame)| {
         let line = format!("capture --stage 6 --size 200 --frame {frame} --through none -o {name}");
         let output = program(&folder, &line).output().unwrap();
         assert_eq!(succeeded(&output, &line), "");
+        (name, fs::read(folder.path().join(name)).unwrap())
+    })
+});
+
+/// A folder with what `compare` compares.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &*COMPARED {
+        fs::write(folder.path().join(name), bytes).unwrap();
     }
     folder
 }
@@ -57,11 +67,7 @@ fn folder() -> TempDir {
 fn written(folder: &TempDir) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
     let mut files: Vec<_> = entries
-        .filter(|entry| {
-            !["one.exr", "other.exr"]
-                .map(Into::into)
-                .contains(&entry.file_name())
-        })
+        .filter(|entry| !COMPARED.iter().any(|(name, _)| entry.file_name() == *name))
         .map(|entry| {
             let name = entry.file_name().into_string().unwrap();
             (name, fs::read(entry.path()).unwrap())
