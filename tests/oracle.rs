@@ -38,11 +38,11 @@ fn sub(a: &Vector, b: &Vector) -> Vector {
 }
 
 fn scale(a: &Vector, factor: &Number) -> Vector {
-    a.each_ref().map(|a| a * factor)
+    [&a[0] * factor, &a[1] * factor, &a[2] * factor]
 }
 
 fn negative(a: &Vector) -> Vector {
-    a.each_ref().map(|a| -a)
+    [-&a[0], -&a[1], -&a[2]]
 }
 
 fn dot(a: &Vector, b: &Vector) -> Number {
@@ -279,6 +279,11 @@ pub(crate) struct Oracle<'a> {
     to_light: Vector,
     /// l.
     light: Vector,
+    background: Vector,
+    /// The light's intensities times the material's coefficients.
+    ambient: Vector,
+    diffuse: Vector,
+    specular: Vector,
 }
 
 /// What is the same wherever one looks in one direction.
@@ -308,6 +313,8 @@ struct Sight {
     eye: Point,
     /// Where it enters each solid, once a stage has asked.
     entries: Vec<OnceCell<Option<Entry>>>,
+    /// The same of the surface.
+    surface_entry: OnceCell<Option<Entry>>,
 }
 
 impl<'a> Oracle<'a> {
@@ -336,6 +343,8 @@ impl<'a> Oracle<'a> {
         let [x, z] = [&sin, &cos].map(|component| &Number::exact(-10.0) * component);
         let to_light = exact(-scene.light().direction);
         let view = |y: f64| View::new([x.clone(), Number::exact(y), z.clone()], &to_light, bits);
+        let (light, material) = (scene.light(), scene.material());
+        let product = |k: DVec3, intensity: DVec3| zip(&exact(k), &exact(intensity), |k, i| k * i);
         Oracle {
             scene,
             size,
@@ -346,6 +355,10 @@ impl<'a> Oracle<'a> {
             mirrored: view(3.0),
             light: unit(&to_light, bits),
             to_light,
+            background: exact(scene.background()),
+            ambient: product(material.ambient, light.ambient_intensity),
+            diffuse: product(material.diffuse, light.intensity),
+            specular: product(material.specular, light.intensity),
             sin,
             cos,
         }
@@ -401,6 +414,7 @@ impl<'a> Oracle<'a> {
                 scale: Number::exact(1.0),
             },
             entries: self.solids.iter().map(|_| OnceCell::new()).collect(),
+            surface_entry: OnceCell::new(),
         }
     }
 
@@ -435,13 +449,13 @@ impl<'a> Oracle<'a> {
 
         if stage >= Stage::Shadow
             && let (Some(surface), Some(square)) = (self.scene.surface(), &self.square)
-            && let Some(entry) = square.entry(ray)
+            && let Some(entry) = sight.surface_entry.get_or_init(|| square.entry(ray))
             && first.is_none_or(|(_, other)| entry.t.less(&other.t))
         {
             return self.surface_at(stage, surface, &ray.at(&entry.t));
         }
         match first {
-            None => (Decision::Background, exact(self.scene.background())),
+            None => (Decision::Background, self.background.clone()),
             Some((index, entry)) => {
                 let (seen, color) = self.shade(stage, (index, entry), &sight.eye, &self.direct);
                 (Decision::Solid(seen), color)
@@ -452,7 +466,7 @@ impl<'a> Oracle<'a> {
     /// What the surface shows at a point of it.
     fn surface_at(&self, stage: Stage, surface: &Surface, point: &Point) -> (Decision, Vector) {
         if self.is_shadowed(point, None) {
-            return (Decision::SurfaceInShadow, self.ambient());
+            return (Decision::SurfaceInShadow, self.ambient.clone());
         }
         let reflected = point.toward(&self.mirrored.looking);
         let mut first: Option<(usize, Entry)> = None;
@@ -509,38 +523,25 @@ impl<'a> Oracle<'a> {
             && (dot(&normal, &self.to_light).sign().is_le()
                 || self.is_shadowed(&point, Some(index))
                 || self.square.as_ref().is_some_and(by_surface));
-        let light = if in_shadow {
-            self.ambient()
+        let color = if in_shadow {
+            zip(&solid.color, &self.ambient, |c, l| c * l)
         } else {
-            self.lit(&normal, view)
+            zip(&solid.color, &self.lit(&normal, view), |c, l| c * l)
         };
-        (seen(in_shadow), zip(&solid.color, &light, |c, l| c * l))
-    }
-
-    fn ambient(&self) -> Vector {
-        let (light, material) = (self.scene.light(), self.scene.material());
-        zip(
-            &exact(material.ambient),
-            &exact(light.ambient_intensity),
-            |k, i| k * i,
-        )
+        (seen(in_shadow), color)
     }
 
     /// Equation 4-1 in the light.
     fn lit(&self, normal: &Vector, view: &View) -> Vector {
-        let material = self.scene.material();
-        let intensity = exact(self.scene.light().intensity);
-        let times_intensity = |k: DVec3| zip(&exact(k), &intensity, |k, i| k * i);
         let n = unit(normal, self.bits);
-        let mut sum = self.ambient();
+        let mut sum = self.ambient.clone();
         if dot(normal, &self.to_light).sign().is_gt() {
-            let diffuse = times_intensity(material.diffuse);
-            sum = add(&sum, &scale(&diffuse, &dot(&n, &self.light)));
+            sum = add(&sum, &scale(&self.diffuse, &dot(&n, &self.light)));
         }
         if let Some(halfway) = &view.halfway {
-            let specular = times_intensity(material.specular);
-            let highlight = dot(&n, halfway).clipped_power(material.exponent);
-            sum = add(&sum, &scale(&specular, &highlight));
+            let exponent = self.scene.material().exponent;
+            let highlight = dot(&n, halfway).clipped_power(exponent);
+            sum = add(&sum, &scale(&self.specular, &highlight));
         }
         sum
     }

@@ -212,9 +212,14 @@ impl Add for &Binary {
                 return Binary::cut(large.significand.clone(), large.exponent, error, bits);
             }
         }
-        let exponent = self.exponent.min(other.exponent);
-        let [a, b] = [self, other].map(|x| &x.significand << (x.exponent - exponent) as usize);
-        Binary::cut(a + b, exponent, error, bits)
+        let (fine, coarse) = if self.exponent <= other.exponent {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        let places = (coarse.exponent - fine.exponent) as usize;
+        let sum = &fine.significand + (&coarse.significand << places);
+        Binary::cut(sum, fine.exponent, error, bits)
     }
 }
 
