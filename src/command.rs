@@ -172,7 +172,7 @@ pub(crate) fn say(message: &str) {
 
 /// A text without control characters, which a terminal would obey.
 fn escaped(text: &str) -> String {
-    let mut escaped = String::new();
+    let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         if character.is_control() {
             escaped.extend(character.escape_default());
