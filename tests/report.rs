@@ -353,7 +353,7 @@ fn the_plot_is_xml_and_shows_every_kernel_and_every_group() {
     let folder = tempfile::tempdir().unwrap();
     // A name that XML would take for something else.
     let name = "a&b<c>.toml";
-    std::fs::write(folder.path().join(name), hard_scene_text("along_faces")).unwrap();
+    std::fs::write(folder.path().join(name), hard_scene_text("highlights")).unwrap();
     report(
         &folder,
         &format!(
