@@ -83,7 +83,7 @@ fn refusals() -> Vec<(String, usize, Option<&'static str>, &'static str)> {
 
 #[test]
 fn a_refusal_is_short_however_long_a_key_is() {
-    let key = "k".repeat(3_000_000);
+    let key = "k".repeat(300_000);
     for (text, part) in [
         (format!("{key} = 1"), "k…k"),
         (format!("{key} = 1"), "`, expected one of `background`"),
