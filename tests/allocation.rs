@@ -50,7 +50,7 @@ fn a_frame_allocates_nothing() {
                 .filter(|&stage| stage != Stage::Reflection)
             {
                 for retained in [false, true] {
-                    check(scene, (stage, kernel), 200, retained);
+                    check(scene, (stage, kernel), 100, retained);
                 }
             }
         }

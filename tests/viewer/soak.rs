@@ -11,7 +11,7 @@ const SOAK: &str = "FIRSTHIT_SOAK_SECONDS";
 
 #[test]
 fn used_at_random_it_stays_well_and_its_memory_bounded() {
-    let Some(mut session) = Session::start(&["view", "--size", "200"]) else {
+    let Some(mut session) = Session::start(&["view", "--size", "50"]) else {
         return;
     };
     let seconds = std::env::var(SOAK).map_or(10, |seconds| seconds.parse().unwrap());
@@ -23,7 +23,7 @@ fn used_at_random_it_stays_well_and_its_memory_bounded() {
     while start.elapsed() < Duration::from_secs(seconds) {
         session.program.goes_on();
         match random(12) {
-            0 => session.resize(1 + random(700) as u32, 1 + random(700) as u32),
+            0 => session.resize(1 + random(500) as u32, 1 + random(500) as u32),
             1 => session.point(random(300) as i16, random(300) as i16),
             2 => session.click(if random(2) == 0 { WHEEL_UP } else { WHEEL_DOWN }),
             3 => session.click(RIGHT_BUTTON),
