@@ -141,7 +141,7 @@ fn a_tracer_with_a_mistake_earns_the_hint_at_it() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         let option = format!("-DMISTAKE={mistake}");
-        // To compile it fast saves more than what it computes takes.
+        // To optimise it would take longer than all that it computes.
         let Some(command) = compiled(&folder, "correct.c", &["-O0", &option]) else {
             return;
         };
