@@ -73,6 +73,8 @@ fn the_other_kernels() {
 /// Whole, traced over another frame, and with what was decided.
 #[test]
 fn any_number_of_threads() {
+    // Eleven bands of rows, the last of them not whole: more than there are threads.
+    const SIZE: u32 = 83;
     let scene = Scene::builtin();
     for kernel in Kernel::ALL {
         let tracers = (1..=8).map(|threads| Tracer::new(kernel, threads).unwrap());
