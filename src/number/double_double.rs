@@ -94,7 +94,6 @@ impl DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = DoubleDouble;
-    #[inline]
     fn add(self, other: DoubleDouble) -> DoubleDouble {
         let (high, high_error) = two_sum(self.high, other.high);
         let carried = self.error + other.error;
@@ -118,7 +117,6 @@ impl Add for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = DoubleDouble;
-    #[inline]
     fn neg(self) -> DoubleDouble {
         DoubleDouble {
             high: -self.high,
@@ -130,7 +128,6 @@ impl Neg for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = DoubleDouble;
-    #[inline]
     fn sub(self, other: DoubleDouble) -> DoubleDouble {
         self + -other
     }
@@ -138,7 +135,6 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = DoubleDouble;
-    #[inline]
     fn mul(self, other: DoubleDouble) -> DoubleDouble {
         if self.is_zero() || other.is_zero() {
             return DoubleDouble::exact(0.0);

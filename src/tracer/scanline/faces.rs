@@ -19,6 +19,8 @@ pub(crate) struct FaceSplitter {
     slots: Vec<Slot>,
     /// By the number of late faces, the slot that they had last.
     slot_of: Vec<u32>,
+    /// The numbers of the regions that reach the band, while they are crossed.
+    reaching: Vec<u32>,
     coverage: Coverage,
     parts: Vec<(Columns, Shown)>,
 }
@@ -68,9 +70,10 @@ impl FaceSplitter {
                 let (from, to) = region.rows();
                 from < first + ROWS as u32 && first < to
             });
-            let numbers = reaching.map(|(number, _)| number);
+            self.reaching.clear();
+            self.reaching.extend(reaching.map(|(number, _)| number));
             let edges = &mut self.slots[slot].edges;
-            edges.cross(&faces.regions, numbers, first, level, grid);
+            edges.cross(&faces.regions, &self.reaching, first, level, grid);
         }
         self.parts.clear();
         self.coverage.clear(&faces.regions);

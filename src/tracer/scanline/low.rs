@@ -44,7 +44,7 @@ impl LowEdges {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
             self.first = Some(first);
-            let low = table.low(first).iter().copied();
+            let low = table.low(first);
             self.edges.cross(&table.regions, low, first, level, grid);
         }
         self.edges.reach(row)

@@ -38,7 +38,7 @@ impl RowEdges {
     pub(crate) fn cross(
         &mut self,
         regions: &Regions<'_>,
-        numbers: impl Iterator<Item = u32>,
+        numbers: &[u32],
         first: u32,
         level: Level,
         grid: Grid,
@@ -53,11 +53,11 @@ impl RowEdges {
         &mut self,
         simd: S,
         regions: &Regions<'_>,
-        numbers: impl Iterator<Item = u32>,
+        numbers: &[u32],
         first: u32,
         grid: Grid,
     ) {
-        for region in numbers {
+        for &region in numbers {
             let region = region as usize;
             let band = regions.all[region].cross(simd, first, grid);
             let ([a, d], [b, c]) = (band.possible, band.certain);
