@@ -347,7 +347,7 @@ impl Tracer {
 
     fn trace_rows(
         &mut self,
-        pixels: &impl RowPixels,
+        pixels: &dyn RowPixels,
         precision: Precision,
         target: Target<'_>,
         arena: &Arena,
@@ -450,7 +450,7 @@ struct TraceFrame<'t> {
 impl FrameWork for TraceFrame<'_> {
     type Output = ();
 
-    fn by_rows(self, pixels: &impl RowPixels, precision: Precision, arena: &Arena) {
+    fn by_rows(self, pixels: &dyn RowPixels, precision: Precision, arena: &Arena) {
         let trace = |tracer: &mut Tracer, target: Target<'_>| {
             tracer.trace_rows(pixels, precision, target, arena)
         };
@@ -477,7 +477,7 @@ impl FrameWork for ExplainPixel {
     /// The pixel is traced with the rest of its row, as in a picture.
     fn by_rows(
         self,
-        pixels: &impl RowPixels,
+        pixels: &dyn RowPixels,
         precision: Precision,
         arena: &Arena,
     ) -> (String, Rung) {

@@ -14,7 +14,7 @@ pub(super) trait FrameWork {
     type Output;
 
     /// Does the work for a kernel that traces rows. `arena` holds what lives as long as the frame.
-    fn by_rows(self, pixels: &impl RowPixels, precision: Precision, arena: &Arena) -> Self::Output;
+    fn by_rows(self, pixels: &dyn RowPixels, precision: Precision, arena: &Arena) -> Self::Output;
 
     /// Does the work for a kernel that traces pixel by pixel.
     fn by_pixels(self, pixels: &impl Pixels) -> Self::Output;

@@ -124,9 +124,9 @@ const CROWD: Crowd = Crowd {
 };
 
 /// A frame, ready to be traced row by row.
-pub(super) struct RowTracer<'f, P> {
+pub(super) struct RowTracer<'f> {
     /// Decides the pixels that rows leave in doubt.
-    pixels: &'f P,
+    pixels: &'f dyn RowPixels,
     frame: PreparedFrame<'f>,
     late: LateSource<'f>,
     level: Level,
@@ -152,16 +152,21 @@ struct Painters {
     spare: Bump,
 }
 
-impl<'f, P: RowPixels> RowTracer<'f, P> {
+impl<'f> RowTracer<'f> {
     /// Prepares the frame of `pixels`.
-    pub(super) fn new(pixels: &'f P, precision: Precision, level: Level, arena: &'f Arena) -> Self {
+    pub(super) fn new(
+        pixels: &'f dyn RowPixels,
+        precision: Precision,
+        level: Level,
+        arena: &'f Arena,
+    ) -> Self {
         RowTracer::with_crowd(CROWD, pixels, precision, level, arena)
     }
 
     /// The same, with another idea of what a crowd is.
     fn with_crowd(
         crowd: Crowd,
-        pixels: &'f P,
+        pixels: &'f dyn RowPixels,
         precision: Precision,
         level: Level,
         arena: &'f Arena,

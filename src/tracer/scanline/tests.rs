@@ -16,7 +16,7 @@ use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::decision::{Decision, Seen};
-use crate::tracer::ladder::{Ladder, Pixels as _, RowPixels, Rung};
+use crate::tracer::ladder::{Ladder, Rung};
 
 /// All of the surface in the shadow of one sphere, and in those of others.
 const SHADOW_IN_SHADOW: &str = "# Shadows within a shadow
@@ -84,7 +84,7 @@ const SCENES: [&str; 11] = [
 ];
 
 /// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
-pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, Ladder<'_>>)) {
+pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_>)) {
     for text in SCENES {
         let scene = match text {
             "" => Scene::builtin(),
@@ -115,11 +115,7 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_, L
 }
 
 /// The spans of a row, from the left: where each ends, and what is visible there.
-fn spans<P: RowPixels>(
-    tracer: &RowTracer<'_, P>,
-    row: u32,
-    scratch: &mut Scratch,
-) -> Vec<(u32, Visible)> {
+fn spans(tracer: &RowTracer<'_>, row: u32, scratch: &mut Scratch) -> Vec<(u32, Visible)> {
     let Scratch {
         active,
         low,
@@ -187,8 +183,8 @@ enum Claim {
 }
 
 /// What `shown` claims of the pixels of these columns, with faces told apart.
-fn claims<P: RowPixels>(
-    tracer: &RowTracer<'_, P>,
+fn claims(
+    tracer: &RowTracer<'_>,
     row: u32,
     columns: Columns,
     shown: Shown,

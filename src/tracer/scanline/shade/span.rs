@@ -32,7 +32,7 @@ impl SpanShader {
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         in_shadow: &'r Paint,
-        pixels: &impl Pixels,
+        pixels: &dyn Pixels,
     ) {
         // Its columns would take longer than its pixels.
         if shaded.constants.is_small && writer.precision == Precision::Certified {
@@ -75,7 +75,7 @@ impl SpanShader {
     }
 
     /// Decides the columns left in doubt.
-    fn decide_doubts(&mut self, writer: &mut RowWriter<'_>, pixels: &impl Pixels) {
+    fn decide_doubts(&mut self, writer: &mut RowWriter<'_>, pixels: &dyn Pixels) {
         if !self.scratch.doubts.is_empty() {
             writer.decide(self.scratch.doubts.drain(..), pixels);
         }

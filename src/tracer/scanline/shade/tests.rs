@@ -3,7 +3,7 @@
 use fearless_simd::{Level, dispatch};
 
 use crate::tracer::decision::Decision;
-use crate::tracer::ladder::{Ladder, Pixels as _};
+
 use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
@@ -27,7 +27,7 @@ struct Counts {
 /// casters, and with those that may cast a shadow on the row's box. Certain samples are compared
 /// with those of pixels that show the sphere.
 fn check(
-    tracer: &RowTracer<'_, Ladder<'_>>,
+    tracer: &RowTracer<'_>,
     shaded: &ShadedSphere<'_>,
     by_columns: bool,
     (level, name): (Level, &str),

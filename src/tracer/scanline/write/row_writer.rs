@@ -106,7 +106,7 @@ impl<'r> RowWriter<'r> {
     }
 
     /// Decides each pixel by itself.
-    pub(crate) fn decide(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &impl Pixels) {
+    pub(crate) fn decide(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &dyn Pixels) {
         for column in columns {
             self.mark_written();
             let ((decision, color), rung) = pixels.pixel(column, self.row);
