@@ -82,7 +82,7 @@ pub(crate) trait Real:
 }
 
 /// a₀b₀ + a₁b₁ + …, one operation after the other.
-#[inline(never)]
+#[inline]
 fn products_summed<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> R {
     let mut sum = a[0] * b[0];
     for i in 1..N {

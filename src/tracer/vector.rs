@@ -25,12 +25,12 @@ impl<R: Real> Vector<R> {
         Vector::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
     }
 
-    #[inline(never)]
+    #[inline]
     pub(crate) fn dot(self, other: Self) -> R {
         R::sum_of_products([self.x, self.y, self.z], [other.x, other.y, other.z])
     }
 
-    #[inline(never)]
+    #[inline]
     pub(crate) fn cross(self, other: Self) -> Self {
         let component = |a: [R; 2], b: [R; 2]| R::sum_of_products([a[0], -a[1]], [b[1], b[0]]);
         Vector::new(

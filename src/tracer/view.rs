@@ -118,7 +118,7 @@ impl<'f, R: Real> View<'f, R> {
     }
 
     /// The solid of this number.
-    #[inline(never)]
+    #[inline]
     pub(super) fn solid(&self, number: usize) -> Solid<&'f Sphere<R>, &'f TetrahedronInView<R>> {
         match Solid::index(number, self.spheres.len()) {
             Solid::Sphere(index) => Solid::Sphere(&self.spheres[index]),
