@@ -238,7 +238,7 @@ impl Real for Bounded {
         known.into()
     }
 
-    #[inline(never)]
+    #[inline]
     fn sum_of_products<const N: usize>(a: [Bounded; N], b: [Bounded; N]) -> Bounded {
         let errors = (0..N).fold(0.0, |sum, i| sum + (a[i].error + b[i].error));
         if errors == 0.0 {

@@ -94,6 +94,7 @@ impl DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn add(self, other: DoubleDouble) -> DoubleDouble {
         let (high, high_error) = two_sum(self.high, other.high);
         let carried = self.error + other.error;
@@ -117,6 +118,7 @@ impl Add for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn neg(self) -> DoubleDouble {
         DoubleDouble {
             high: -self.high,
@@ -128,6 +130,7 @@ impl Neg for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn sub(self, other: DoubleDouble) -> DoubleDouble {
         self + -other
     }
@@ -135,6 +138,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = DoubleDouble;
+    #[inline]
     fn mul(self, other: DoubleDouble) -> DoubleDouble {
         if self.is_zero() || other.is_zero() {
             return DoubleDouble::exact(0.0);

@@ -83,23 +83,20 @@ impl<'f, R: Real> View<'f, R> {
             }
             Halfway::Computed => Some(halfway(&eye_direction(), &to_light)),
         };
-        let spheres = match direct {
-            None => {
-                let spheres = scene.spheres().iter().zip(&scene.facts().spheres);
-                allocator.slice_of(spheres.map(|(sphere, &support)| Sphere {
-                    center: transform.point(sphere.center),
-                    radius: R::exact(sphere.radius) * transform.scale,
-                    support,
-                }))
-            }
-            Some(direct) => allocator.slice_of(direct.spheres.iter().map(|sphere| Sphere {
-                center: reflect(sphere.center, mirror_height),
-                ..*sphere
-            })),
-        };
+        let spheres = scene.spheres().iter().zip(&scene.facts().spheres);
+        let spheres = spheres
+            .enumerate()
+            .map(|(index, (sphere, &support))| Sphere {
+                center: match direct {
+                    None => transform.point(sphere.center),
+                    Some(direct) => reflect(direct.spheres[index].center, mirror_height),
+                },
+                radius: R::exact(sphere.radius) * transform.scale,
+                support,
+            });
         View {
             extents,
-            spheres,
+            spheres: allocator.slice_of(spheres),
             tetrahedra: TetrahedraInView::new(
                 scene,
                 transform,
