@@ -52,7 +52,7 @@ pub(crate) fn prepare_solids<'f>(
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
     for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
         let appearance = match view.solid(solid.number) {
-            Solid::Tetrahedron(t) if is_late => {
+            Solid::Tetrahedron(t) if is_late && appearances.is_divided(&solid, t) => {
                 parts.late_faces += 1;
                 let number = parts.late_faces - 1;
                 Appearance::LateFaces(arena.alloc(LateFaces::new(number, solid.faces(), t)))
@@ -216,6 +216,22 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         }))
     }
 
+    /// Whether shadows may fall on a face.
+    fn receives(&self, solid: usize, face: usize, t: &TetrahedronInView<Bounded>) -> bool {
+        let casters = || self.picture.scene.facts().casters.on(solid, Some(face));
+        self.has_shadows
+            && !t.solid.turned_away(face)
+            && (!casters().is_empty() || self.surface.reaches(solid))
+    }
+
+    /// Whether creases or shadows may divide a tetrahedron.
+    fn is_divided(&self, solid: &Outlined<'f>, t: &TetrahedronInView<Bounded>) -> bool {
+        match solid.front_faces {
+            [only] => self.receives(solid.number, *only, t),
+            _ => true,
+        }
+    }
+
     /// The front faces of a tetrahedron, whose regions and paints are added.
     fn front_faces(
         &self,
@@ -226,21 +242,22 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         let (arena, grid) = (parts.arena, parts.grid);
         let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
         for face in solid.front_faces {
-            let turned_away = self.has_shadows && t.solid.turned_away(*face);
-            let shadows = if self.has_shadows && !turned_away {
-                self.shadows_on_face(solid, *face, t, parts)
-            } else {
-                Growing::new_in(arena)
-            };
+            let mut shadows = Growing::new_in(arena);
+            if self.receives(solid.number, *face, t) {
+                shadows = self.shadows_on_face(solid, *face, t, parts);
+            }
             let mut paint = |in_shadow| {
                 let decision = self.decision(solid.number, Some(*face), in_shadow);
                 parts.paints.add(decision)
             };
-            let in_shadow = paint(self.has_shadows);
+            let outside = paint(self.has_shadows && t.solid.turned_away(*face));
             front_faces.push(FrontFace {
-                lit: if turned_away { in_shadow } else { paint(false) },
-                in_shadow,
-                turned_away,
+                outside,
+                in_shadow: if shadows.is_empty() {
+                    outside
+                } else {
+                    paint(true)
+                },
                 shadows: parts.edge_table.add_receiver(shadows, solid.rows),
             });
         }
@@ -273,17 +290,13 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
     ) -> Growing<'f, Region<'f>> {
         let (arena, grid) = (parts.arena, parts.grid);
         let casters = &self.picture.scene.facts().casters;
-        let casters = casters.on(solid.number, Some(face));
-        let mut shadows = Growing::new_in(arena);
-        if casters.is_empty() && !self.surface.reaches(solid.number) {
-            return shadows;
-        }
+        let casters = casters.on(solid.number, Some(face)).iter().copied();
         let plane = &face_plane(&t.solid.inner_half_space(face), grid);
-        let casters = casters.iter().copied();
         let solids = shadows_on(plane, self.view, casters, |_| false, grid, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);
+        let mut shadows = Growing::new_in(arena);
         shadows.extend(solids.chain(surface).map(clipped));
         shadows
     }

@@ -12,12 +12,11 @@ pub(crate) struct FrontFaces<'f> {
 /// A face of a tetrahedron that eye rays enter.
 #[derive(Clone, Copy)]
 pub(crate) struct FrontFace {
-    /// The paint in the light.
-    pub(crate) lit: PaintNumber,
-    /// The paint in shadow.
+    /// The paint outside of all shadows. A face that is turned away from the light is dark there,
+    /// too.
+    pub(crate) outside: PaintNumber,
+    /// The paint in a shadow.
     pub(crate) in_shadow: PaintNumber,
-    /// Whether all of it is turned away from the light, and so in shadow.
-    pub(crate) turned_away: bool,
     /// The receiver of the shadows on the face.
     pub(crate) shadows: Receiver,
 }

@@ -127,12 +127,9 @@ pub(crate) fn front_face(
 
 /// What a gap shows where it sees a front face.
 fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
-    if front_face.turned_away {
-        return Shown::Paint(front_face.in_shadow);
-    }
     match coverage.in_shadow(front_face.shadows) {
         Some(true) => Shown::Paint(front_face.in_shadow),
-        Some(false) => Shown::Paint(front_face.lit),
+        Some(false) => Shown::Paint(front_face.outside),
         None => Shown::InDoubt,
     }
 }
