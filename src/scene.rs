@@ -134,7 +134,9 @@ impl PartialEq for Scene {
                 surface,
                 light,
                 material,
-                ..
+                spheres: _,
+                tetrahedra: _,
+                facts: _,
             } = *scene;
             (background, surface, light, material)
         };

@@ -6,8 +6,8 @@
 //!
 //! - `kernel`, `decision`, `vector`, `line`, `half_space`: the kernels, what a pixel can show,
 //!   points and rays;
-//! - `view_space`, `view_transform`, `view_signs`, `view_tetrahedra`, `view`: view space, into which
-//!   the scene and its mirror image are turned by α;
+//! - `view_space`, `view_transform`, `view_signs`, `view_tetrahedra`, `view`: view space, into
+//!   which the scene and its mirror image are turned by α;
 //! - `sphere`, `tetrahedron`, `surface`: intersections; `shading`: equation 4-1; `palette`: the
 //!   colours that many pixels share;
 //! - `extent`, `tiles`, `surface_casters`: which solids a pixel need not be tested against;

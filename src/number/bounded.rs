@@ -15,9 +15,10 @@
 //!   |b| − E_b,
 //! - root: E_a/√a + u v, from |√A − √a| = |A − a|/(√A + √a), √A ≥ 0.
 //!
-//! These expressions are themselves computed in f64. Each is made of at most 12 operations on terms
-//! that are not negative, so that what is computed is at least (1 − u)¹² of the expression, and
-//! [`ROUND_UP`] more than makes up for that, for u|v| in place of u|a ∘ b|, and for |v| in place of
+//! These expressions are themselves computed in f64. No term passes through more than 12
+//! operations, all on terms that are not negative (of sums of products, up to four products), so
+//! that what is computed is at least (1 − u)¹² of the expression, and [`ROUND_UP`] more than makes
+//! up for that, for u|v| in place of u|a ∘ b|, and for |v| in place of
 //! |a/b|. What underflow can take away is less than [`UNDERFLOW`]: a scene's numbers have
 //! magnitudes from 1e-30 to 1e6, no formula has a term of more than eight factors of them, and a
 //! number as small as 1e-290 is in doubt.
@@ -240,6 +241,7 @@ impl Real for Bounded {
 
     #[inline]
     fn sum_of_products<const N: usize>(a: [Bounded; N], b: [Bounded; N]) -> Bounded {
+        const { assert!(N <= 4, "the bound is derived for four products") };
         let errors = (0..N).fold(0.0, |sum, i| sum + (a[i].error + b[i].error));
         if errors == 0.0 {
             // Products and sums may be exact, too.
@@ -257,7 +259,8 @@ impl Real for Bounded {
             value += term;
             error += its_error + U * value.abs();
         }
-        // Without an error, each product has a factor that is known to be 0.
+        // Without an error, each product has a factor that is known to be 0. A factor of which
+        // nothing is known makes the sum unknown, even beside a 0.
         let lost = if error == 0.0 { 0.0 } else { UNDERFLOW };
         Bounded {
             value,

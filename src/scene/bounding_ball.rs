@@ -57,6 +57,8 @@ impl Projections {
     /// The projections along `direction`, of length 1.
     pub(super) fn new(balls: &[BoundingBall], direction: DVec3) -> Self {
         let projection = |(number, ball): (usize, &BoundingBall)| {
+            // More than rounding takes from a projection, and more than a rounded direction moves
+            // it: so projections of balls that overlap do so by more than comparing them rounds.
             let slack = ball.center.abs().element_sum() * (MARGIN - 1.0);
             let half = ball.radius * MARGIN + slack;
             let middle = ball.center.dot(direction);
@@ -91,7 +93,8 @@ impl Projections {
         let place = self.places[number];
         let (begin, end, _) = self.sorted[place];
         let (before, after) = (&self.sorted[..place], &self.sorted[place + 1..]);
-        // Projections of balls that overlap do so by their slacks, which are more than rounding.
+        // No projection is longer than `longest`, whose margin is more than a difference rounds:
+        // what begins earlier than that ends before this one begins, and so does all before it.
         let begins_late = move |other: &&(f64, f64, usize)| other.0 + self.longest >= begin;
         let before = before.iter().rev().take_while(begins_late);
         let before = before.filter(move |other| other.1 >= begin);

@@ -56,7 +56,7 @@ impl Casters {
             on_faces: vec![Default::default(); tetrahedra.len()],
             balls,
         };
-        if casters.balls.len() <= FEW {
+        if casters.are_found() {
             for solid in 0..casters.balls.len() {
                 casters.on(solid, None);
                 for face in 0..4 {
@@ -79,7 +79,7 @@ impl Casters {
             }),
             (Solid::Tetrahedron(casters), Some(face)) => casters[face].get_or_init(|| {
                 let prisms = &self.prisms[solid - self.on_spheres.len()];
-                let vertices = FACES[face].map(|vertex| prisms.vertices[vertex]);
+                let vertices = vertices_of(face, &prisms.vertices);
                 match &prisms.light[face] {
                     Some(light) => self.find(solid, Some(light), Balls::points(&vertices)),
                     None => Vec::new(),
@@ -87,6 +87,11 @@ impl Casters {
             }),
             (Solid::Tetrahedron(_), None) => &[],
         }
+    }
+
+    /// Whether the casters of all solids are found.
+    pub(crate) fn are_found(&self) -> bool {
+        self.balls.len() <= FEW
     }
 
     /// Finds the casters of a sphere, or of a face with the prism `light` on it.
@@ -145,8 +150,8 @@ impl<'s> Balls<'s> {
 }
 
 /// The vertices of face `k` of a tetrahedron: all but vertex `k`.
-fn face(tetrahedron: &Tetrahedron, k: usize) -> [DVec3; 3] {
-    FACES[k].map(|vertex| tetrahedron.vertices[vertex])
+fn vertices_of(k: usize, vertices: &[DVec3; 4]) -> [DVec3; 3] {
+    FACES[k].map(|vertex| vertices[vertex])
 }
 
 /// The prisms of a tetrahedron along the light.
@@ -170,11 +175,11 @@ impl Prisms {
         };
         // The plane of a face, with the solid on the inner side.
         let own = |k: usize| {
-            let [a, b, c] = face(tetrahedron, k);
+            let [a, b, c] = vertices_of(k, &tetrahedron.vertices);
             PrismPlane::new(a, [b - a, c - a], v[k], magnitude)
         };
         let light = [0, 1, 2, 3].map(|k: usize| {
-            let [a, b, c] = face(tetrahedron, k);
+            let [a, b, c] = vertices_of(k, &tetrahedron.vertices);
             let on_face = [
                 own(k).map(PrismPlane::flipped),
                 along_light(a, b, c),
@@ -288,7 +293,7 @@ mod tests {
     fn meets_tetrahedron(point: DVec3, l: DVec3, tetrahedron: &Tetrahedron) -> bool {
         let (mut enter, mut leave) = (1e-6, f64::INFINITY);
         for k in 0..4 {
-            let [a, b, c] = face(tetrahedron, k);
+            let [a, b, c] = vertices_of(k, &tetrahedron.vertices);
             let normal = (b - a).cross(c - a);
             let outward = -normal * normal.dot(tetrahedron.vertices[k] - a).signum();
             let (height, climb) = (outward.dot(point - a), outward.dot(l));
@@ -330,7 +335,7 @@ mod tests {
                 .iter()
                 .map(|tetrahedron| {
                     [0, 1, 2, 3].map(|k| {
-                        let [a, b, c] = face(tetrahedron, k);
+                        let [a, b, c] = vertices_of(k, &tetrahedron.vertices);
                         let normal = (b - a).cross(c - a);
                         let inward = normal.dot(tetrahedron.vertices[k] - a).signum();
                         (-inward * normal.dot(l)).total_cmp(&0.0)
@@ -363,7 +368,7 @@ mod tests {
             }
             for (index, tetrahedron) in tetrahedra.iter().enumerate() {
                 for k in (0..4).filter(|k| facing[index][*k].is_gt()) {
-                    let [a, b, c] = face(tetrahedron, k);
+                    let [a, b, c] = vertices_of(k, &tetrahedron.vertices);
                     for _ in 0..20 {
                         let [i, j] = [a, b].map(|_| vector(1.0).x.abs());
                         let (i, j) = if i + j > 1.0 {

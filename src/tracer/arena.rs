@@ -1,6 +1,7 @@
 //! The memory of a frame: all its parts lie side by side, and the next frame reuses the memory.
 //!
-//! The parts of frames own nothing, so none is dropped.
+//! The parts in `setup` and `threads` own nothing, so none is dropped. The tiles own their memory,
+//! which the next frame reuses.
 
 use std::sync::{Mutex, OnceLock};
 
@@ -40,7 +41,8 @@ pub(super) struct OnDemand<T> {
 }
 
 impl<T: Default> OnDemand<T> {
-    /// The part. `make` makes it of one that is out of date.
+    /// The part. The first call makes it: `make` gets that of an earlier frame, or an empty one,
+    /// and overwrites it.
     pub(super) fn get(&self, make: impl FnOnce(&mut T)) -> &T {
         self.made.get_or_init(|| {
             let mut part = std::mem::take(&mut *lock(&self.before));

@@ -45,7 +45,7 @@ struct SolidExtent {
 }
 
 /// Bounds on 109 t − 3 Y where eye rays enter a solid: t is a ray's parameter, Y the coordinate of
-/// the pixel's row.
+/// the pixel's row. t is (that + 3 Y)/109: so one number bounds the entry in every row.
 #[derive(Clone, Copy)]
 pub(super) struct Entry {
     pub(super) nearest: f64,

@@ -242,7 +242,8 @@ impl<'f> Ladder<'f> {
         let mut arbitrary = self.arbitrary().pop().unwrap_or_else(|| {
             let (session, picture) = Session::begin(|| {
                 let picture = self.picture::<Expression>(&self.threads.get());
-                // Expressions that a pixel makes are forgotten with the pixel.
+                // What is made while a pixel is decided is forgotten with the pixel: so all
+                // tetrahedra are made before.
                 for mirrored in [false, true] {
                     picture.view(mirrored).tetrahedra.all().for_each(drop);
                 }

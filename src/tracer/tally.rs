@@ -11,8 +11,8 @@ pub struct Tally {
     pub double_double: u64,
     /// Pixels that double-doubles left in doubt, and arbitrary precision settled.
     pub arbitrary: u64,
-    /// Edges of regions that crossed rows, added up over the rows; none for a kernel that goes
-    /// pixel by pixel.
+    /// Edges of regions that crossed rows, added up over the rows, without those that divide a
+    /// single tetrahedron of a crowd; none for a kernel that goes pixel by pixel.
     pub edges: u64,
     /// Spans between them, each of which shows one thing, added up likewise.
     pub spans: u64,

@@ -53,6 +53,7 @@ impl Tiles {
                     .map(move |column| (row * per_row + column) as usize)
             })
         };
+        // As `bucketed`, but in memory that is reused.
         starts.clear();
         starts.resize((per_row * per_row) as usize + 1, 0);
         for tile in (0..count).flat_map(reached) {

@@ -59,7 +59,7 @@ impl SolidKinds {
 }
 
 impl<'f, R: Real> View<'f, R> {
-    /// The scene itself, or in the mirror: then `direct` is the scene itself.
+    /// The view of the scene itself; or, given that view as `direct`, the view in the mirror.
     pub(super) fn new(
         scene: &'f Scene,
         transform: &ViewTransform<R>,

@@ -31,6 +31,7 @@ pub(super) struct TetrahedronInView<R> {
 }
 
 impl<'f, R: Real> TetrahedraInView<'f, R> {
+    /// None is computed yet. `face_signs` are those of this view.
     pub(super) fn new(
         scene: &'f Scene,
         transform: &ViewTransform<R>,

@@ -40,8 +40,7 @@ impl FaceSplitter {
         self.slot_of.resize(count, 0);
     }
 
-    /// What a row shows in columns that show the late faces of this number, from the left; and
-    /// the number of edges between.
+    /// What a row shows in columns that show the late faces of this number, from the left.
     pub(crate) fn split(
         &mut self,
         (number, faces): (usize, &SplitFaces<'_>),

@@ -16,10 +16,12 @@ impl EdgeAt {
         EdgeAt(u64::from(column) << 32 | u64::from(edge.0))
     }
 
+    /// The column at which it is.
     pub(crate) fn column(self) -> u32 {
         (self.0 >> 32) as u32
     }
 
+    /// The edge itself.
     pub(crate) fn edge(self) -> Edge {
         Edge(self.0 as u32)
     }

@@ -185,9 +185,9 @@ impl Ellipse {
         }
     }
 
-    /// The outline of a sphere on the screen. There the chord's middle is the sphere's, and m is the
-    /// second coordinate in the axes of `shade/light.rs`: (10 (Y − c_y) − 3 (Z − c_z))/√109, divided
-    /// once, because at α = 0 the numerator may be exact.
+    /// The outline of a sphere on the screen. There the chord's middle is the sphere's, and m is
+    /// the second coordinate in the axes of `shade/light.rs`: (10 (Y − c_y) − 3 (Z − c_z))/√109,
+    /// divided once, because at α = 0 the numerator may be exact.
     pub(crate) fn outline(center: Vector<Bounded>, radius: Bounded, grid: Grid) -> Ellipse {
         let root = Bounded::exact(EYE_SQUARED).sqrt();
         let [three, ten] = [EYE_Y, EYE_Z].map(Bounded::exact);

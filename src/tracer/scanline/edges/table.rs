@@ -43,6 +43,7 @@ pub(crate) struct EdgeTableBuilder<'f> {
 
 /// Regions, and what each of them is.
 pub(crate) struct Regions<'f> {
+    /// By their numbers.
     pub(crate) all: &'f [Region<'f>],
     /// By the number of the region.
     pub(crate) kinds: &'f [RegionKind],

@@ -43,7 +43,7 @@ pub(crate) fn prepare_solids<'f>(
     let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
     let appearances = Appearances::new(picture, view, mirrored);
     let sides = collect(arena, outlines.all.iter().map(|solid| solid.side));
-    // In short loops, the processor reads ahead of what lies in another order.
+    // The colours lie in another order: in a loop of its own, the processor reads several at once.
     let colors = numbers.iter().map(|&number| picture.solid_color(number));
     let colors = collect(arena, colors);
     let is_late = appearances.has_shadows
@@ -52,7 +52,7 @@ pub(crate) fn prepare_solids<'f>(
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
     for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
         let appearance = match view.solid(solid.number) {
-            Solid::Tetrahedron(t) if is_late && appearances.is_divided(&solid, t) => {
+            Solid::Tetrahedron(t) if is_late => {
                 parts.late_faces += 1;
                 let number = parts.late_faces - 1;
                 Appearance::LateFaces(arena.alloc(LateFaces::new(number, solid.faces(), t)))
@@ -78,8 +78,8 @@ pub(crate) fn prepare_solids<'f>(
     }
 }
 
-/// Late faces, of the view in the mirror or of the direct one; they are made now if they are asked
-/// for first. `color` tells the colour of a decision, `spare` is memory that is free afterwards.
+/// The front faces of `late`, in the view in the mirror or in the direct one. The first call makes
+/// them. `color` tells the colour of a decision; `spare` is memory for the work, free afterwards.
 pub(crate) fn late_faces<'l, 'f>(
     late: &'l LateFaces<'f>,
     source: &LateSource<'f>,
@@ -218,18 +218,10 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
 
     /// Whether shadows may fall on a face.
     fn receives(&self, solid: usize, face: usize, t: &TetrahedronInView<Bounded>) -> bool {
-        let casters = || self.picture.scene.facts().casters.on(solid, Some(face));
+        let casters = &self.picture.scene.facts().casters;
         self.has_shadows
             && !t.solid.turned_away(face)
-            && (!casters().is_empty() || self.surface.reaches(solid))
-    }
-
-    /// Whether creases or shadows may divide a tetrahedron.
-    fn is_divided(&self, solid: &Outlined<'f>, t: &TetrahedronInView<Bounded>) -> bool {
-        match solid.front_faces {
-            [only] => self.receives(solid.number, *only, t),
-            _ => true,
-        }
+            && (self.surface.reaches(solid) || !casters.on(solid, Some(face)).is_empty())
     }
 
     /// The front faces of a tetrahedron, whose regions and paints are added.

@@ -5,17 +5,18 @@ use crate::tracer::scanline::write::paint::PaintNumber;
 
 /// The front faces of a tetrahedron, and the pairs that tell which one is seen.
 pub(crate) struct FrontFaces<'f> {
+    /// In the order of their face numbers.
     pub(crate) all: &'f [FrontFace],
+    /// All pairs of them.
     pub(crate) pairs: &'f [Pair],
 }
 
 /// A face of a tetrahedron that eye rays enter.
 #[derive(Clone, Copy)]
 pub(crate) struct FrontFace {
-    /// The paint outside of all shadows. A face that is turned away from the light is dark there,
-    /// too.
+    /// The paint outside of all shadows: of a face turned away from the light, that of the dark.
     pub(crate) outside: PaintNumber,
-    /// The paint in a shadow.
+    /// The paint in a shadow; the same where none may fall on the face.
     pub(crate) in_shadow: PaintNumber,
     /// The receiver of the shadows on the face.
     pub(crate) shadows: Receiver,

@@ -22,21 +22,26 @@ use crate::tracer::view_tetrahedra::TetrahedronInView;
 pub(crate) struct LateFaces<'f> {
     /// The number among all late faces of the frame.
     pub(crate) number: usize,
+    /// What they are made from.
     pub(crate) outlined: OutlinedFaces<'f>,
     pub(crate) tetrahedron: &'f TetrahedronInView<Bounded>,
+    /// They themselves, once they are made.
     pub(crate) made: OnceLock<SplitFaces<'f>>,
 }
 
 /// Front faces with regions and paints of their own.
 pub(crate) struct SplitFaces<'f> {
+    /// The faces; receivers, creases and paints are numbers among those of this solid.
     pub(crate) front_faces: FrontFaces<'f>,
     /// The creases, and the shadows on the faces.
     pub(crate) regions: Regions<'f>,
+    /// The paints of the faces.
     pub(crate) paints: AllPaints<'f>,
 }
 
 /// What late faces are made from.
 pub(crate) struct LateSource<'f> {
+    /// The frame as f64 with a bound knows it.
     pub(crate) picture: &'f Picture<'f, Bounded>,
     pub(crate) grid: Grid,
     /// The memory for what threads make.

@@ -16,9 +16,6 @@ use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth};
 use crate::tracer::view::{SolidKinds, View};
 
-/// Of more solids, shadows are not counted.
-const MANY: usize = 256;
-
 /// The outline of a solid, and its depth.
 pub(crate) struct Outlined<'f> {
     /// Its number in the scene.
@@ -46,6 +43,7 @@ pub(crate) struct OutlinedFaces<'f> {
     /// The half-planes of the outline, and its rows.
     pub(crate) outline: &'f [HalfPlane],
     pub(crate) rows: (u32, u32),
+    /// The numbers of the front faces.
     pub(crate) front_faces: &'f [usize],
 }
 
@@ -143,13 +141,13 @@ impl<'f> Outlines<'f> {
         self.area / (u64::from(grid.size) * u64::from(grid.size))
     }
 
-    /// The mean number of shadows on front faces that a row may meet; of more than [`MANY`] solids,
-    /// whose casters are not all known, as many as there can be.
+    /// The mean number of shadows on front faces that a row may meet; in a crowd of which not all
+    /// casters are found, as many as there can be.
     pub(crate) fn face_shadows(&self, scene: &Scene, grid: Grid) -> u64 {
-        if self.all.len() > MANY {
+        let casters = &scene.facts().casters;
+        if !casters.are_found() {
             return u64::MAX;
         }
-        let casters = &scene.facts().casters;
         let of_solid = |solid: &Outlined<'_>| {
             let (from, to) = solid.outline.rows();
             let faces = solid.front_faces.iter();

@@ -77,7 +77,7 @@ impl ShadowCylinder {
         ];
         let largest = constants.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         // AB − ab = α B + a β; at most three products and two sums round, each by u of no more than
-        // all magnitudes. Then the sum with the constant rounds, and three more that it is part of.
+        // all magnitudes. Then the constant is part of three sums, which round.
         let carried = distance * length_error + (length + length_error) * distance_error;
         let own_error = sphere.errors(lighting.moment_sizes)[ZONES - 1];
         let form_error =

@@ -129,6 +129,7 @@ pub(crate) struct HitBounds {
 }
 
 impl HitBounds {
+    /// Those of a sphere with this outline.
     pub(crate) fn new(sphere: &Sphere<Bounded>, outline: &Ellipse) -> HitBounds {
         let radius = sphere.radius.at_most() * INFLATION;
         // q = X − c_x rounds once, and |q| ≤ R where the sphere is hit.
@@ -276,7 +277,8 @@ pub(crate) struct Coefficients {
 pub(crate) type Cycle = [f64; 8 + 2];
 
 impl<'f> SphereConstants<'f> {
-    /// `bounds` are those of the sphere, `color` is its colour, in the mirror times the reflectance.
+    /// `bounds` are those of the sphere, `color` is its colour, in the mirror times the
+    /// reflectance.
     pub(crate) fn new(
         sphere: &Sphere<Bounded>,
         outline: &Ellipse,
