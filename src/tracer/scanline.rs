@@ -323,6 +323,7 @@ impl<'f> RowTracer<'f> {
     }
 
     /// Writes columns that all show the same.
+    #[inline(always)]
     fn write<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
