@@ -31,26 +31,26 @@ use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 use crate::tracer::view_tetrahedra::TetrahedronInView;
 
-/// Prepares the solids with these outlines, and adds their regions and paints. `view` is that of
+/// Prepares the solids of these outlines, and adds their regions and paints. `view` is that of
 /// the scene, or the one in the mirror.
 pub(crate) fn prepare_solids<'f>(
     picture: &Picture<'f, Bounded>,
     view: &View<'f, Bounded>,
-    outlines: Outlines<'f>,
+    outlines: Outlines<'_, 'f>,
     parts: &mut Builder<'f, '_>,
 ) -> PreparedSolids<'f> {
     let (arena, mirrored) = (parts.arena, outlines.mirrored);
-    let numbers = collect(arena, outlines.all.iter().map(|solid| solid.number));
+    let numbers = outlines.numbers;
     let appearances = Appearances::new(picture, view, mirrored);
-    let sides = collect(arena, outlines.all.iter().map(|solid| solid.side));
+    let sides = numbers.iter().map(|&number| outlines.side(number));
+    let sides = collect(arena, sides);
     // The colours lie in another order: in a loop of its own, the processor reads several at once.
     let colors = numbers.iter().map(|&number| picture.solid_color(number));
     let colors = collect(arena, colors);
-    let is_late = appearances.has_shadows
-        && outlines.face_shadows(picture.scene, parts.grid) >= parts.late_from;
+    let is_late = appearances.has_shadows && outlines.face_shadows() >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
-    for (index, solid) in (0..).map(SolidIndex).zip(outlines.all) {
+    for (index, solid) in (0..).map(SolidIndex).zip(outlines.into_all()) {
         let appearance = match view.solid(solid.number) {
             Solid::Tetrahedron(t) if is_late => {
                 parts.late_faces += 1;

@@ -60,7 +60,7 @@ impl<'f> PreparedFrame<'f> {
         let mut parts = Builder::new(grid, color, crowd.late_from, regions, arena);
         let background = parts.paints.add(Decision::Background);
         let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
-        let is_crowded = outlines.depth_complexity(grid) >= crowd.cull_from;
+        let is_crowded = outlines.depth_complexity() >= crowd.cull_from;
         let tiles = is_crowded.then(|| {
             let mut tiles = Tiles::new(grid, level, arena);
             outlines.cull(&mut tiles);

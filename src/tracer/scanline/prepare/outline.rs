@@ -1,6 +1,7 @@
-//! The outlines and depths of a view's solids, before culling.
+//! The outlines and depths of a view's solids that may be seen.
 
 use bumpalo::Bump;
+use bumpalo::collections::Vec as Growing;
 
 use crate::number::Bounded;
 use crate::scene::{Scene, Side, Solid};
@@ -20,7 +21,6 @@ use crate::tracer::view::{SolidKinds, View};
 pub(crate) struct Outlined<'f> {
     /// Its number in the scene.
     pub(crate) number: usize,
-    pub(crate) side: Side,
     pub(crate) outline: Region<'f>,
     pub(crate) depth: Depth<'f>,
     /// The face numbers of a tetrahedron's front faces.
@@ -28,11 +28,20 @@ pub(crate) struct Outlined<'f> {
 }
 
 /// The solids that are seen directly, or in the mirror, within an extent of the screen.
-pub(crate) struct Outlines<'f> {
+pub(crate) struct Outlines<'v, 'f> {
     pub(crate) mirrored: bool,
-    pub(crate) all: bumpalo::collections::Vec<'f, Outlined<'f>>,
+    view: &'v View<'f, Bounded>,
+    scene: &'f Scene,
+    grid: Grid,
+    arena: &'f Bump,
+    /// The rows of the extent.
+    rows: (u32, u32),
+    /// The numbers of the solids in the scene, in the order of bands.
+    pub(crate) numbers: &'f [usize],
     /// The sum of the areas of their extents, in pixels.
     area: u64,
+    /// The outlines of these solids, once they are culled.
+    culled: Option<Growing<'f, Outlined<'f>>>,
 }
 
 /// What the front faces of a tetrahedron are prepared from.
@@ -59,116 +68,144 @@ impl<'f> Outlined<'f> {
     }
 }
 
-impl<'f> Outlines<'f> {
-    /// The outlines of a view. `within` is the extent of the surface, for the view in the mirror.
+impl<'v, 'f> Outlines<'v, 'f> {
+    /// The solids of a view. `within` is the extent of the surface, for the view in the mirror.
     pub(crate) fn new(
-        picture: &Picture<'_, Bounded>,
-        view: &View<'_, Bounded>,
+        picture: &Picture<'f, Bounded>,
+        view: &'v View<'f, Bounded>,
         within: Option<&Extent>,
         grid: Grid,
         arena: &'f Bump,
     ) -> Self {
-        let (facts, stage) = (picture.scene.facts(), picture.stage);
+        let (scene, stage) = (picture.scene, picture.stage);
+        let facts = scene.facts();
         let mirrored = within.is_some();
         let kinds = SolidKinds::of(stage);
-        let mut outlines = Outlines {
-            mirrored,
-            all: bumpalo::collections::Vec::with_capacity_in(view.solid_count(), arena),
-            area: 0,
+        let is_seen = |&number: &usize| {
+            let extent = view.extents.of(number);
+            kinds.hold(&scene.solid(number))
+                && extent.area() > 0
+                // From this stage on all solids take part, and a hidden one is never seen.
+                && !(facts.enclosed[number] && stage >= Stage::Shading)
+                // The surface mirrors nothing that is below.
+                && !(mirrored && facts.sides[number] == Side::Below)
+                && within.is_none_or(|within| extent.meets(within))
         };
+        let seen = collect(arena, (0..view.solid_count()).filter(is_seen));
         // What a band of rows shows lies side by side in memory if it is prepared in the order of
         // bands.
-        let numbers =
-            (0..view.solid_count()).filter(|number| kinds.hold(&picture.scene.solid(*number)));
-        let numbers = numbers.map(|number| {
+        let by_band = seen.iter().map(|&number| {
             let (first, _) = view.extents.of(number).rows;
             (first as usize / ROWS, number)
         });
         let bands = (grid.size as usize).div_ceil(ROWS);
-        let (numbers, _) = bucketed(arena, bands + 1, numbers);
-        for &number in numbers {
-            let (side, extent) = (facts.sides[number], view.extents.of(number));
-            let (mut first, mut end) = extent.rows;
-            if let Some(within) = within {
-                (first, end) = (first.max(within.rows.0), end.min(within.rows.1));
-            }
-            let area = extent.area();
-            let is_seen = area > 0
-                // From this stage on all solids take part, and a hidden one is never seen.
-                && !(facts.enclosed[number] && stage >= Stage::Shading)
-                // The surface mirrors nothing that is below.
-                && !(mirrored && side == Side::Below)
-                && within.is_none_or(|within| extent.meets(within));
-            if !is_seen {
-                continue;
-            }
-            outlines.area += area;
-            let rows = (first, end);
-            outlines.all.push(match view.solid(number) {
-                Solid::Sphere(sphere) => {
-                    let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
-                    let ellipse = &*arena.alloc(ellipse);
-                    Outlined {
-                        number,
-                        side,
-                        depth: Depth::of_sphere(sphere.center, ellipse, sphere.support, grid),
-                        outline: Region::new(&[], Some(ellipse), grid).within(rows),
-                        front_faces: &[],
-                    }
-                }
-                Solid::Tetrahedron(t) => {
-                    let met = t.solid.met(&t.eye_edges);
-                    let met = met.map(|half_space| HalfPlane::on_screen(&half_space, grid));
-                    let front_faces = collect(arena, t.eye_edges.entered());
-                    let faces = front_faces.iter();
-                    let depths =
-                        faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(*face), grid));
-                    Outlined {
-                        number,
-                        side,
-                        outline: Region::new(collect(arena, met), None, grid).within(rows),
-                        depth: Depth::FrontFaces(collect(arena, depths)),
-                        front_faces,
-                    }
-                }
-            });
+        let (numbers, _) = bucketed(arena, bands + 1, by_band);
+        Outlines {
+            mirrored,
+            view,
+            scene,
+            grid,
+            arena,
+            rows: within.map_or((0, grid.size), |within| within.rows),
+            numbers,
+            area: seen
+                .iter()
+                .map(|&number| view.extents.of(number).area())
+                .sum(),
+            culled: None,
         }
-        outlines
     }
 
     /// The mean number of extents that hold a pixel.
-    pub(crate) fn depth_complexity(&self, grid: Grid) -> u64 {
-        self.area / (u64::from(grid.size) * u64::from(grid.size))
+    pub(crate) fn depth_complexity(&self) -> u64 {
+        self.area / (u64::from(self.grid.size) * u64::from(self.grid.size))
     }
 
-    /// The mean number of shadows on front faces that a row may meet; in a crowd of which not all
-    /// casters are found, as many as there can be.
-    pub(crate) fn face_shadows(&self, scene: &Scene, grid: Grid) -> u64 {
-        let casters = &scene.facts().casters;
+    /// The mean number of shadows on front faces that a row may meet, where half of all faces are
+    /// front faces; in a crowd of which not all casters are found, as many as there can be.
+    pub(crate) fn face_shadows(&self) -> u64 {
+        let casters = &self.scene.facts().casters;
         if !casters.are_found() {
             return u64::MAX;
         }
-        let of_solid = |solid: &Outlined<'_>| {
-            let (from, to) = solid.outline.rows();
-            let faces = solid.front_faces.iter();
-            let shadows = faces.map(|face| casters.on(solid.number, Some(*face)).len() as u64);
-            u64::from(to.saturating_sub(from)) * shadows.sum::<u64>()
+        let of_solid = |&number: &usize| match self.scene.solid(number) {
+            Solid::Sphere(_) => 0,
+            Solid::Tetrahedron(_) => {
+                let (from, to) = self.rows_of(number);
+                let shadows = (0..4).map(|face| casters.on(number, Some(face)).len() as u64);
+                u64::from(to.saturating_sub(from)) * shadows.sum::<u64>()
+            }
         };
-        self.all.iter().map(of_solid).sum::<u64>() / u64::from(grid.size)
+        self.numbers.iter().map(of_solid).sum::<u64>() / (2 * u64::from(self.grid.size))
     }
 
     /// Leaves out the solids that others hide in all tiles.
     pub(crate) fn cull(&mut self, tiles: &mut Tiles<'_>) {
-        for solid in &self.all {
+        let mut all = Growing::with_capacity_in(self.numbers.len(), self.arena);
+        all.extend(self.numbers.iter().map(|&number| self.outline(number)));
+        for solid in &all {
             // Mirrored rays begin at the surface, and may miss a solid that goes through it.
-            if !self.mirrored || solid.side == Side::Above {
+            if !self.mirrored || self.side(solid.number) == Side::Above {
                 tiles.hide_behind(&solid.outline, &solid.depth);
             }
         }
-        for solid in &mut self.all {
+        for solid in &mut all {
             let rows = tiles.rows_of_solid(&solid.outline, &solid.depth);
             solid.outline.restrict(rows);
         }
-        self.all.retain(|solid| !solid.outline.is_nowhere());
+        all.retain(|solid| !solid.outline.is_nowhere());
+        self.numbers = collect(self.arena, all.iter().map(|solid| solid.number));
+        self.culled = Some(all);
+    }
+
+    /// The outlines of the solids of `numbers`. Those that are not culled are made one by one, so
+    /// that each is used while the processor has it at hand.
+    pub(crate) fn into_all(mut self) -> impl Iterator<Item = Outlined<'f>> {
+        let culled = self.culled.take();
+        let others = if culled.is_some() { &[] } else { self.numbers };
+        let others = others.iter().map(move |&number| self.outline(number));
+        culled.into_iter().flatten().chain(others)
+    }
+
+    /// The side of the surface that a solid is on.
+    pub(crate) fn side(&self, number: usize) -> Side {
+        self.scene.facts().sides[number]
+    }
+
+    /// The rows in which a solid may be seen.
+    fn rows_of(&self, number: usize) -> (u32, u32) {
+        let (from, to) = self.view.extents.of(number).rows;
+        (from.max(self.rows.0), to.min(self.rows.1))
+    }
+
+    /// The outline of a solid.
+    fn outline(&self, number: usize) -> Outlined<'f> {
+        let (grid, arena, rows) = (self.grid, self.arena, self.rows_of(number));
+        match self.view.solid(number) {
+            Solid::Sphere(sphere) => {
+                let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
+                let ellipse = &*arena.alloc(ellipse);
+                Outlined {
+                    number,
+                    depth: Depth::of_sphere(sphere.center, ellipse, sphere.support, grid),
+                    outline: Region::new(&[], Some(ellipse), grid).within(rows),
+                    front_faces: &[],
+                }
+            }
+            Solid::Tetrahedron(t) => {
+                let met = t.solid.met(&t.eye_edges);
+                let met = met.map(|half_space| HalfPlane::on_screen(&half_space, grid));
+                let front_faces = collect(arena, t.eye_edges.entered());
+                let faces = front_faces.iter();
+                let depths =
+                    faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(*face), grid));
+                Outlined {
+                    number,
+                    outline: Region::new(collect(arena, met), None, grid).within(rows),
+                    depth: Depth::FrontFaces(collect(arena, depths)),
+                    front_faces,
+                }
+            }
+        }
     }
 }
