@@ -332,18 +332,18 @@ impl RowPixels for Ladder<'_> {
         &self.bounded
     }
 
-    /// Each colour is settled once: a colour halfway between two floats needs arbitrary precision,
-    /// which is too slow for every pixel of a face.
     fn color(&self, decision: Decision) -> [f32; 3] {
-        let settle = || self.settle(&ColorOf(decision)).0;
-        *self.colors.get(decision).get_or_init(settle)
+        self.settle(&ColorOf(decision)).0
     }
 }
 
 impl Pixels for Ladder<'_> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
         let ((decision, color), rung) = self.settle(&PixelAt(column, row));
-        let color = color.unwrap_or_else(|| self.color(decision));
+        // A colour halfway between two floats needs arbitrary precision, which is too slow for every
+        // pixel of a face: so each colour is settled once.
+        let settle = || self.color(decision);
+        let color = color.unwrap_or_else(|| *self.colors.get(decision).get_or_init(settle));
         ((decision, color), rung)
     }
 
