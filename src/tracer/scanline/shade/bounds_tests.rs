@@ -171,16 +171,31 @@ struct Case<'c> {
 }
 
 impl Case<'_> {
-    /// Checks what the pixel at X = `x` finds out about its zone, where it has this s.
+    /// Checks what neighbouring pixels from `first` on find out about their zones, where they have
+    /// these s.
     #[inline(always)]
-    fn check_classes<S: Simd>(&self, in_row: &RowShader<'_, S, Certified>, x: f64, s: f64) {
+    fn check_classes<S: Simd>(&self, in_row: &RowShader<'_, S, Certified>, first: u32, s: &[f64]) {
         let least = self.constants.min_squares;
-        let is_near = |least: &f64| (s * s - least).abs() < 1e-9 * least;
-        if !least.iter().any(is_near) {
-            let classes = in_row.classify([x, x], 1);
-            let zone = least.iter().take_while(|least| s * s < **least).count();
-            assert_eq!(classes.beyond, u64::from(zone == ZONES));
-            assert!(classes.beyond == 1 || classes.zone == zone, "s = {s}");
+        let is_near = |s: &f64| {
+            least
+                .iter()
+                .any(|least| (s * s - least).abs() < 1e-6 * least)
+        };
+        if !s.iter().any(is_near) {
+            let end = first + s.len() as u32;
+            let [x, last] = [first, end - 1].map(|column| self.grid.coordinate(column));
+            let classes = in_row.classify([x, x], last, (1 << s.len()) - 1);
+            let zones = s
+                .iter()
+                .map(|s| least.iter().take_while(|least| s * s < **least).count());
+            for (lane, zone) in zones.clone().enumerate() {
+                assert_eq!(classes.beyond >> lane & 1 == 1, zone == ZONES, "{s:?}");
+            }
+            assert_eq!(
+                Some(classes.zone),
+                zones.map(|zone| zone.min(ZONES - 1)).max(),
+                "{s:?}"
+            );
         }
     }
 
@@ -203,7 +218,7 @@ impl Case<'_> {
                 in_row.lit(x, facing, &ambient, (zone, u64::MAX))
             });
             let forms = self.forms.map(|form| in_row.value(&form, &hits));
-            self.check_classes(&in_row, x, hits.s.as_slice()[0]);
+            self.check_classes(&in_row, first, hits.s.as_slice());
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = constants.squared_radius - m * m - q * q;

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::lane::Lane;
 use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, Samples};
-use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight, ZONES};
+use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight};
 
 /// The classes of some pixels of a sphere, which tell how they are shaded.
 pub(crate) struct Classes {
@@ -80,34 +80,50 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     }
 
     /// What the pixels of a run tell of themselves: those whose bits are set in `pixels`, from X =
-    /// `x` on, in two vectors if one does not hold all, from `next` on.
+    /// `x` to X = `last`, in two vectors if one does not hold all, from `next` on.
     #[inline(always)]
-    pub(crate) fn classify(&self, [x, next]: [f64; 2], pixels: u64) -> Classes {
-        let lanes = LaneVector::<S, P>::LEN;
-        let (mut inside, mut bright) = ([0; ZONES], 0);
-        for (half, x) in [x, next].into_iter().enumerate() {
-            if half * lanes < S::f32s::LEN && pixels >> (half * lanes) != 0 {
+    pub(crate) fn classify(&self, [x, next]: [f64; 2], last: f64, pixels: u64) -> Classes {
+        let sphere = self.sphere;
+        // s² falls with |q|, and rounding is monotonic: so s² is least at an end.
+        let squares = [x, last].map(|x| {
+            let q = x - sphere.center_x;
+            (sphere.squared_radius - self.m * self.m) - q * q
+        });
+        // A NaN is in no zone.
+        let is_out = |least: f64| !(squares[0] >= least && squares[1] >= least);
+        let [innermost, inner, outermost] = sphere.min_squares;
+        let mut beyond = 0;
+        if is_out(outermost) {
+            beyond = pixels;
+            for (shift, x) in self.vectors([x, next], pixels) {
                 let [_, squared] = self.squares(x);
-                for (zone, inside) in inside.iter_mut().enumerate() {
-                    let is_inside = squared.simd_ge(P::Lane::of(self.sphere.min_squares[zone]));
-                    *inside |= is_inside.to_bitmask() << (half * lanes);
-                }
-                if let Some(highlight) = &self.sphere.highlight {
-                    let halfway = self.value(&highlight.form, &self.hits(x));
-                    let is_bright =
-                        halfway.simd_gt(P::Lane::of(self.sphere.lighting.highlight.threshold));
-                    bright |= is_bright.to_bitmask() << (half * lanes);
-                }
+                let is_inside = squared.simd_ge(P::Lane::of(outermost));
+                beyond &= !(is_inside.to_bitmask() << shift);
             }
         }
-        let [innermost, inner, outermost] = inside;
-        let shadeable = pixels & outermost;
-        let is_out = |inside: u64| usize::from(shadeable & !inside != 0);
-        Classes {
-            zone: is_out(innermost) + is_out(inner),
-            bright: bright & shadeable,
-            beyond: pixels & !outermost,
+        let mut bright = 0;
+        if let Some(highlight) = &sphere.highlight
+            && highlight.reaches(self.m * sphere.inverse_radius, sphere.lighting)
+        {
+            let threshold = P::Lane::of(sphere.lighting.highlight.threshold);
+            for (shift, x) in self.vectors([x, next], pixels) {
+                let halfway = self.value(&highlight.form, &self.hits(x));
+                bright |= halfway.simd_gt(threshold).to_bitmask() << shift;
+            }
         }
+        Classes {
+            zone: usize::from(is_out(innermost)) + usize::from(is_out(inner)),
+            bright: bright & pixels & !beyond,
+            beyond,
+        }
+    }
+
+    /// The first pixel of each vector that holds any of `pixels`: its number, and its X.
+    #[inline(always)]
+    fn vectors(&self, x: [f64; 2], pixels: u64) -> impl Iterator<Item = (usize, f64)> {
+        let lanes = LaneVector::<S, P>::LEN;
+        let has_two = lanes < S::f32s::LEN && pixels >> lanes != 0;
+        [0, lanes].into_iter().zip(x).take(1 + usize::from(has_two))
     }
 
     /// n·l of the pixels from X = `x` on, in two vectors if one does not hold all, from `next` on.

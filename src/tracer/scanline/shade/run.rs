@@ -71,7 +71,8 @@ impl Run<'_> {
         let begin = self.from + first as u32;
         let Some(RunColumns { zones, bright }) = self.columns else {
             let lanes = LaneVector::<S, P>::LEN;
-            return row.classify(self.x(first, lanes), u64::MAX >> (64 - here));
+            let last = self.grid.coordinate(begin + here as u32 - 1);
+            return row.classify(self.x(first, lanes), last, u64::MAX >> (64 - here));
         };
         let is_out = |(from, to): Columns| begin < from || begin + here as u32 > to;
         let [innermost, inner] = zones;

@@ -26,6 +26,10 @@ pub(crate) const ZONES: usize = 3;
 /// R over the smallest s of each zone.
 const ZONE_DIVISORS: [f64; ZONES] = [8.0, 128.0, 16384.0];
 
+/// s² is computed with and without fused operations. They differ by less than 4u R², which is no
+/// more than 2⁻²³ of the smallest s² of any zone.
+const FUSED_MARGIN: f64 = 1.0 + 1.0 / (1 << 22) as f64;
+
 /// The radius below which a sphere is small, in thirds of a pixel.
 const SMALL: f64 = 30.0;
 
@@ -115,6 +119,14 @@ pub(crate) struct SphereHighlight {
     pub(crate) errors: [[f64; 2]; ZONES],
     /// The largest difference of m/R and that of h at which there is a highlight.
     pub(crate) max_distance: f64,
+}
+
+impl SphereHighlight {
+    /// Whether a row may have a highlight, in which m/R is `m`.
+    pub(crate) fn reaches(&self, m: f64, lighting: &Lighting) -> bool {
+        // |n − h| is no less than its component along the axis of m.
+        (m - lighting.highlight.halfway[1]).abs() <= self.max_distance
+    }
 }
 
 /// The centre of a sphere, and bounds on q, m and s of any pixel.
@@ -331,8 +343,9 @@ impl<'f> SphereConstants<'f> {
             center_x: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
             m: outline.m,
-            min_squares: ZONE_DIVISORS
-                .map(|divisor| (bounds.radius / divisor) * (bounds.radius / divisor) * INFLATION),
+            min_squares: ZONE_DIVISORS.map(|divisor| {
+                (bounds.radius / divisor) * (bounds.radius / divisor) * FUSED_MARGIN
+            }),
             lighting,
             n_dot_l,
             inverse_radius: 1.0 / sphere.radius.value(),
