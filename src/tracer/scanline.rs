@@ -119,7 +119,7 @@ use write::row_writer::RowWriter;
 /// From these crowds on, what is done for crowds pays.
 const CROWD: Crowd = Crowd {
     cull_from: 4,
-    low_from: 512,
+    low_from: 4.0,
     late_from: 4,
 };
 

@@ -100,10 +100,10 @@ pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_>))
             let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
             let name = text.lines().next().unwrap_or("built-in");
             // Every frame is one of a crowd, or none.
-            for from in [0, u64::MAX] {
+            for (from, low_from) in [(0, f64::NEG_INFINITY), (u64::MAX, f64::INFINITY)] {
                 let crowd = Crowd {
                     cull_from: from,
-                    low_from: from as usize,
+                    low_from,
                     late_from: from,
                 };
                 let (precision, level) = (Precision::Certified, Level::baseline());

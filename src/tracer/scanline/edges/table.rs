@@ -147,11 +147,20 @@ impl<'f> EdgeTableBuilder<'f> {
         }
     }
 
-    /// Low regions are told apart if there are at least `low_from`.
-    pub(crate) fn build(self, low_from: usize, grid: Grid) -> EdgeTable<'f> {
+    /// Low regions are told apart if a row meets so many more of them than of others.
+    pub(crate) fn build(self, low_from: f64, grid: Grid) -> EdgeTable<'f> {
         let is_low = |region: &Region<'_>| is_low(region.rows());
-        let lows = self.regions.iter().filter(|region| is_low(region)).count();
-        let is_low = |region: &Region<'_>| lows >= low_from && is_low(region);
+        let more: f64 = self
+            .regions
+            .iter()
+            .map(|region| {
+                let (from, to) = region.rows();
+                let height = f64::from(to.saturating_sub(from));
+                if is_low(region) { height } else { -height }
+            })
+            .sum();
+        let pays = more >= low_from * f64::from(grid.size);
+        let is_low = |region: &Region<'_>| pays && is_low(region);
         let regions = self.regions.iter().enumerate();
         let low = regions.filter_map(|(number, region)| {
             let rows = region.rows();

@@ -22,8 +22,9 @@ use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber};
 pub(crate) struct Crowd {
     /// The mean number of solids behind a pixel from which on frames are culled.
     pub(crate) cull_from: u64,
-    /// The number of regions of few rows from which on they are no active edges.
-    pub(crate) low_from: usize,
+    /// How many more low regions than others a row meets, in the mean, where low regions are no
+    /// active edges.
+    pub(crate) low_from: f64,
     /// The mean number of shadows on front faces in a row from which on faces are late.
     pub(crate) late_from: u64,
 }
