@@ -3,6 +3,7 @@
 //! The parts in `setup` and `threads` own nothing, so none is dropped. The tiles own their memory,
 //! which the next frame reuses.
 
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, OnceLock};
 
 use bumpalo::Bump;
@@ -38,6 +39,8 @@ pub(super) struct OnDemand<T> {
     made: OnceLock<T>,
     /// The part of a frame before, whose memory is reused.
     before: Mutex<T>,
+    /// How often [`OnDemand::get_after`] was called.
+    calls: AtomicU32,
 }
 
 impl<T: Default> OnDemand<T> {
@@ -51,7 +54,18 @@ impl<T: Default> OnDemand<T> {
         })
     }
 
+    /// The part, unless it is not made and there were no more than so many calls: for a part that
+    /// takes longer to make than a few do without.
+    pub(super) fn get_after(&self, calls: u32, make: impl FnOnce(&mut T)) -> Option<&T> {
+        let is_early = self.made.get().is_none() && {
+            let before = self.calls.fetch_add(1, Ordering::Relaxed);
+            before < calls
+        };
+        (!is_early).then(|| self.get(make))
+    }
+
     fn clear(&mut self) {
+        *self.calls.get_mut() = 0;
         if let Some(part) = self.made.take() {
             self.before = Mutex::new(part);
         }

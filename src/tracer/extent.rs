@@ -28,13 +28,16 @@ pub(super) struct Extents<'f> {
     pub(super) casters_on_surface: Option<SurfaceCasterLookup<'f>>,
 }
 
+/// So many pixels of a frame ask all solids before tiles are made.
+const FEW: u32 = 16;
+
 /// The extents of all solids.
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [SolidExtent],
     /// N.
     size: u32,
-    /// Made when a pixel first asks: rows leave few pixels in doubt, and mostly none.
+    /// Made when more than [`FEW`] pixels asked: rows leave few in doubt, and mostly none.
     tiles: &'f OnDemand<Tiles>,
 }
 
@@ -79,10 +82,19 @@ impl<'f> ExtentsOfSolids<'f> {
     /// The solids that can be seen in a pixel, the nearest first.
     pub(super) fn at(&self, pixel: (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
         let (all, size) = (self.all, self.size);
-        let tiles = self.tiles.get(|tiles| find_tiles(tiles, all, size));
-        let solids = tiles.solids_at(pixel).iter();
-        let solids = solids.map(|solid| usize::from(*solid));
-        solids.filter(move |solid| all[*solid].extent.holds(pixel.0, pixel.1))
+        let holds = move |solid: &usize| all[*solid].extent.holds(pixel.0, pixel.1);
+        let make = |tiles: &mut Tiles| find_tiles(tiles, all, size);
+        let (listed, found) = match self.tiles.get_after(FEW, make) {
+            Some(tiles) => (tiles.solids_at(pixel), Vec::new()),
+            None => {
+                let mut found: Vec<usize> = (0..all.len()).filter(holds).collect();
+                let nearest = |solid: usize| all[solid].entry.nearest;
+                found.sort_by(|a, b| nearest(*a).total_cmp(&nearest(*b)));
+                (&[][..], found)
+            }
+        };
+        let listed = listed.iter().map(|solid| usize::from(*solid));
+        listed.filter(holds).chain(found)
     }
 }
 
@@ -266,6 +278,24 @@ mod tests {
             }
             let starts = tiles.starts.iter().copied();
             assert_eq!(starts.max(), Some(tiles.solids.len() as u32));
+        }
+    }
+
+    #[test]
+    fn the_first_pixels_find_the_same_solids_as_all_others() {
+        let all = random_extents(&mut Random::new(), 300);
+        for column in 0..SIZE {
+            let tiles = OnDemand::default();
+            let extents = ExtentsOfSolids {
+                all: &all,
+                size: SIZE,
+                tiles: &tiles,
+            };
+            let first: Vec<usize> = extents.at((column, SIZE / 2)).collect();
+            for _ in 0..2 * FEW {
+                let solids = extents.at((column, SIZE / 2));
+                assert_eq!(solids.collect::<Vec<_>>(), first);
+            }
         }
     }
 }
