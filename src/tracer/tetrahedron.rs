@@ -36,8 +36,6 @@ pub(super) struct EdgeFunctions<R> {
     /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
     /// where it runs along.
     face_signs: [Ordering; 4],
-    /// g of each face that lines enter; 0 for others, which are never asked for.
-    n_dot_d: [R; 4],
     /// For each of [`EDGES`], the normal of the plane in which lines meet it: (n_i × n_j) × d
     /// without its positive factor. Edges between two faces that lines leave or run along are
     /// never asked for.
@@ -100,13 +98,8 @@ impl<R: Real> Tetrahedron<R> {
             let normal = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
             if self.right_handed { normal } else { -normal }
         });
-        let n_dot_d = [0, 1, 2, 3].map(|face| match face_signs[face] {
-            Ordering::Less => self.normals[face].dot(direction.vector),
-            _ => R::exact(0.0),
-        });
         EdgeFunctions {
             face_signs,
-            n_dot_d,
             edge_normals,
         }
     }
@@ -229,7 +222,8 @@ impl<R: Real> Tetrahedron<R> {
             return Ok(None);
         }
         let face = self.entered_face(functions, line)?;
-        let depth = -self.outside(face, line.origin) / functions.n_dot_d[face];
+        let g = self.normals[face].dot(line.direction.vector);
+        let depth = -self.outside(face, line.origin) / g;
         Ok(Some(Hit {
             depth,
             point: line.at(depth),
