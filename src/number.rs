@@ -7,6 +7,7 @@ mod bounded;
 mod double_double;
 mod error_free;
 mod expression;
+mod four;
 pub(crate) mod rounding;
 mod sine;
 
@@ -17,24 +18,26 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(crate) use bounded::Bounded;
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use expression::{Expression, Session};
+pub(crate) use four::FourBounded;
 pub use sine::sin_cos;
 
 /// The bound on a number's error does not determine the sign or the rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Doubt;
 
+/// What vectors are made of: a real number, or several at once.
+pub(crate) trait Ring:
+    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self>
+{
+    /// a₀b₀ + a₁b₁ + …, from the left to the right.
+    fn sum_of_products<const N: usize>(a: [Self; N], b: [Self; N]) -> Self;
+}
+
 /// A real number as a kernel holds it: exactly, roughly, or within known bounds.
 ///
 /// A kernel is a choice of number and of what to do when that number cannot tell a sign or a
 /// rounding: its *doubt*.
-pub(crate) trait Real:
-    Copy
-    + Neg<Output = Self>
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-{
+pub(crate) trait Real: Ring + Mul<Output = Self> + Div<Output = Self> {
     /// What is returned in place of an answer that this number cannot give; [`Infallible`] where it
     /// always answers.
     type Doubt;
@@ -73,12 +76,6 @@ pub(crate) trait Real:
     fn squared(self) -> Self {
         self * self
     }
-
-    /// a₀b₀ + a₁b₁ + …, from the left to the right.
-    #[inline]
-    fn sum_of_products<const N: usize>(a: [Self; N], b: [Self; N]) -> Self {
-        products_summed(a, b)
-    }
 }
 
 /// a₀b₀ + a₁b₁ + …, one operation after the other.
@@ -89,6 +86,13 @@ fn products_summed<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> R {
         sum = sum + a[i] * b[i];
     }
     sum
+}
+
+impl Ring for f64 {
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+        products_summed(a, b)
+    }
 }
 
 impl Real for f64 {
@@ -132,6 +136,13 @@ impl Real for f64 {
 
     fn to_f64(self) -> f64 {
         self
+    }
+}
+
+impl Ring for f32 {
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
+        products_summed(a, b)
     }
 }
 

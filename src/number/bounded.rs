@@ -32,7 +32,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use super::double_double::DoubleDouble;
 use super::error_free::two_sum;
 use super::rounding::{ROUND_UP, U, UNDERFLOW};
-use super::{Doubt, Real, products_summed, round_enclosure, sin_cos};
+use super::{Doubt, Real, Ring, products_summed, round_enclosure, sin_cos};
 
 /// The truth lies within `error` of `value`; exactly there where `error` is 0. An error of infinity
 /// or NaN says nothing.
@@ -182,6 +182,37 @@ impl From<DoubleDouble> for Bounded {
     }
 }
 
+impl Ring for Bounded {
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [Bounded; N], b: [Bounded; N]) -> Bounded {
+        const { assert!(N <= 4, "the bound is derived for four products") };
+        let errors = (0..N).fold(0.0, |sum, i| sum + (a[i].error + b[i].error));
+        if errors == 0.0 {
+            // Products and sums may be exact, too.
+            return products_summed(a, b);
+        }
+        let product = |i: usize| {
+            let (a, b): (Bounded, Bounded) = (a[i], b[i]);
+            let value = a.value * b.value;
+            let carried = (a.value.abs() + a.error) * b.error + b.value.abs() * a.error;
+            (value, carried + U * value.abs())
+        };
+        let (mut value, mut error) = product(0);
+        for i in 1..N {
+            let (term, its_error) = product(i);
+            value += term;
+            error += its_error + U * value.abs();
+        }
+        // Without an error, each product has a factor that is known to be 0. A factor of which
+        // nothing is known makes the sum unknown, even beside a 0.
+        let lost = if error == 0.0 { 0.0 } else { UNDERFLOW };
+        Bounded {
+            value,
+            error: error * ROUND_UP + lost,
+        }
+    }
+}
+
 impl Real for Bounded {
     type Doubt = Doubt;
 
@@ -237,35 +268,6 @@ impl Real for Bounded {
 
     fn or_better(self, known: DoubleDouble) -> Bounded {
         known.into()
-    }
-
-    #[inline]
-    fn sum_of_products<const N: usize>(a: [Bounded; N], b: [Bounded; N]) -> Bounded {
-        const { assert!(N <= 4, "the bound is derived for four products") };
-        let errors = (0..N).fold(0.0, |sum, i| sum + (a[i].error + b[i].error));
-        if errors == 0.0 {
-            // Products and sums may be exact, too.
-            return products_summed(a, b);
-        }
-        let product = |i: usize| {
-            let (a, b): (Bounded, Bounded) = (a[i], b[i]);
-            let value = a.value * b.value;
-            let carried = (a.value.abs() + a.error) * b.error + b.value.abs() * a.error;
-            (value, carried + U * value.abs())
-        };
-        let (mut value, mut error) = product(0);
-        for i in 1..N {
-            let (term, its_error) = product(i);
-            value += term;
-            error += its_error + U * value.abs();
-        }
-        // Without an error, each product has a factor that is known to be 0. A factor of which
-        // nothing is known makes the sum unknown, even beside a 0.
-        let lost = if error == 0.0 { 0.0 } else { UNDERFLOW };
-        Bounded {
-            value,
-            error: error * ROUND_UP + lost,
-        }
     }
 
     #[inline]

@@ -19,7 +19,7 @@ use dashu_float::FBig;
 use dashu_float::round::Round;
 use dashu_float::round::mode::{Down, HalfEven, Up};
 
-use super::{DoubleDouble, Doubt, Real, round_sum};
+use super::{DoubleDouble, Doubt, Real, Ring, products_summed, round_sum};
 
 /// The bits that an evaluation is tried with, one after the other. The first are more than a
 /// double-double has, which has been tried before; with the last it ends.
@@ -445,6 +445,13 @@ impl Div for Expression {
     fn div(self, other: Expression) -> Expression {
         let quotient = Operation::Quotient(self.place, other.place);
         Expression::new(quotient, self.near / other.near)
+    }
+}
+
+impl Ring for Expression {
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [Expression; N], b: [Expression; N]) -> Expression {
+        products_summed(a, b)
     }
 }
 

@@ -179,6 +179,7 @@ impl<'f> RowTracer<'f> {
             late: LateSource {
                 picture,
                 grid: frame.grid,
+                level,
                 threads: &arena.threads,
             },
             frame,

@@ -8,14 +8,18 @@
 //! the edge the line passes. The two faces beside an edge read the same number, and a line cannot
 //! slip between them.
 
+mod at_once;
+
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
+pub(super) use at_once::outward_normals_at_once;
+
 use super::half_space::HalfSpace;
 use super::line::{Direction, Hit, Line, Normal};
 use super::vector::Vector;
-use crate::number::{Real, all};
+use crate::number::{Real, Ring, all};
 use crate::scene::{EDGES, FACES, Support};
 
 /// A tetrahedron in view space.
@@ -59,17 +63,18 @@ impl<R> EdgeFunctions<R> {
 }
 
 impl<R: Real> Tetrahedron<R> {
-    /// Exact arithmetic has decided `supports`, `facing_light`, and whether the edges 0→1, 0→2, 0→3
-    /// are `right_handed`.
+    /// The normals are those that [`outward_normals`] gives. Exact arithmetic has decided
+    /// `supports`, `facing_light`, and whether the edges 0→1, 0→2, 0→3 are `right_handed`.
     pub(super) fn new(
         vertices: [Vector<R>; 4],
+        normals: [Vector<R>; 4],
         right_handed: bool,
         supports: [Support; 4],
         facing_light: [Ordering; 4],
     ) -> Self {
         Tetrahedron {
             vertices,
-            normals: outward_normals(&vertices, right_handed),
+            normals,
             right_handed,
             supports,
             facing_light,
@@ -95,8 +100,8 @@ impl<R: Real> Tetrahedron<R> {
             if face_signs[i].is_ge() && face_signs[j].is_ge() {
                 return Vector::exact(DVec3::ZERO);
             }
-            let normal = (self.vertices[to] - self.vertices[from]).cross(direction.vector);
-            if self.right_handed { normal } else { -normal }
+            let edge = [self.vertices[from], self.vertices[to]];
+            outward(edge_normal(edge, direction.vector), self.right_handed)
         });
         EdgeFunctions {
             face_signs,
@@ -246,12 +251,33 @@ impl<R: Real> Tetrahedron<R> {
     }
 }
 
-/// The outward normals of the faces, of any length.
-fn outward_normals<R: Real>(vertices: &[Vector<R>; 4], right_handed: bool) -> [Vector<R>; 4] {
-    FACES.map(|[a, b, c]| {
-        let normal = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
-        if right_handed { normal } else { -normal }
+/// The outward normals of the faces, of any length. `right_handed` is as for [`Tetrahedron::new`].
+pub(super) fn outward_normals<R: Real>(
+    vertices: &[Vector<R>; 4],
+    right_handed: bool,
+) -> [Vector<R>; 4] {
+    FACES.map(|face| {
+        let normal = plane_normal(face.map(|vertex| vertices[vertex]));
+        outward(normal, right_handed)
     })
+}
+
+/// A normal of the plane through three points.
+#[inline(always)]
+fn plane_normal<R: Ring>([a, b, c]: [Vector<R>; 3]) -> Vector<R> {
+    (b - a).cross(c - a)
+}
+
+/// A normal of the plane in which lines of direction `d` meet an edge.
+#[inline(always)]
+fn edge_normal<R: Ring>([from, to]: [Vector<R>; 2], d: Vector<R>) -> Vector<R> {
+    (to - from).cross(d)
+}
+
+/// The normal of a tetrahedron, given that of a right-handed one.
+#[inline(always)]
+fn outward<R: Ring>(normal: Vector<R>, right_handed: bool) -> Vector<R> {
+    if right_handed { normal } else { -normal }
 }
 
 /// The sign of n·d for each face of a tetrahedron of the scene, where plain f64 is certain of all

@@ -2,9 +2,10 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use fearless_simd::Simd;
 use glam::DVec3;
 
-use crate::number::Real;
+use crate::number::{Bounded, FourBounded, Real, Ring};
 
 /// Three numbers: a point, a direction or a colour.
 #[derive(Clone, Copy, Debug)]
@@ -14,35 +15,37 @@ pub(crate) struct Vector<R> {
     pub(crate) z: R,
 }
 
-impl<R: Real> Vector<R> {
-    #[inline]
+impl<R: Ring> Vector<R> {
+    #[inline(always)]
     pub(crate) fn new(x: R, y: R, z: R) -> Self {
         Vector { x, y, z }
     }
 
-    /// A vector of the scene, each component taken exactly.
-    pub(crate) fn exact(v: DVec3) -> Self {
-        Vector::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
-    }
-
-    #[inline]
+    #[inline(always)]
     pub(crate) fn dot(self, other: Self) -> R {
         R::sum_of_products([self.x, self.y, self.z], [other.x, other.y, other.z])
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn cross(self, other: Self) -> Self {
-        let component = |a: [R; 2], b: [R; 2]| R::sum_of_products([a[0], -a[1]], [b[1], b[0]]);
+        let (a, b) = (self, other);
         Vector::new(
-            component([self.y, self.z], [other.y, other.z]),
-            component([self.z, self.x], [other.z, other.x]),
-            component([self.x, self.y], [other.x, other.y]),
+            R::sum_of_products([a.y, -a.z], [b.z, b.y]),
+            R::sum_of_products([a.z, -a.x], [b.x, b.z]),
+            R::sum_of_products([a.x, -a.y], [b.y, b.x]),
         )
     }
 
     #[inline]
     pub(crate) fn squared_length(self) -> R {
         self.dot(self)
+    }
+}
+
+impl<R: Real> Vector<R> {
+    /// A vector of the scene, each component taken exactly.
+    pub(crate) fn exact(v: DVec3) -> Self {
+        Vector::new(R::exact(v.x), R::exact(v.y), R::exact(v.z))
     }
 
     #[inline]
@@ -62,25 +65,59 @@ impl<R: Real> Vector<R> {
     }
 }
 
-impl<R: Real> Add for Vector<R> {
+impl<S: Simd> Vector<FourBounded<S>> {
+    /// Four vectors as one.
+    #[inline(always)]
+    pub(crate) fn together(simd: S, [a, b, c, d]: [Vector<Bounded>; 4]) -> Self {
+        Vector::new(
+            FourBounded::new(simd, [a.x, b.x, c.x, d.x]),
+            FourBounded::new(simd, [a.y, b.y, c.y, d.y]),
+            FourBounded::new(simd, [a.z, b.z, c.z, d.z]),
+        )
+    }
+
+    /// Four times the same vector.
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, v: Vector<Bounded>) -> Self {
+        Vector::new(
+            FourBounded::splat(simd, v.x),
+            FourBounded::splat(simd, v.y),
+            FourBounded::splat(simd, v.z),
+        )
+    }
+
+    /// The four vectors.
+    #[inline(always)]
+    pub(crate) fn apart(self) -> [Vector<Bounded>; 4] {
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        [
+            Vector::new(x[0], y[0], z[0]),
+            Vector::new(x[1], y[1], z[1]),
+            Vector::new(x[2], y[2], z[2]),
+            Vector::new(x[3], y[3], z[3]),
+        ]
+    }
+}
+
+impl<R: Ring> Add for Vector<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Vector::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
 }
 
-impl<R: Real> Sub for Vector<R> {
+impl<R: Ring> Sub for Vector<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Vector::new(self.x - other.x, self.y - other.y, self.z - other.z)
     }
 }
 
-impl<R: Real> Neg for Vector<R> {
+impl<R: Ring> Neg for Vector<R> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Vector::new(-self.x, -self.y, -self.z)
     }

@@ -3,13 +3,15 @@
 
 use std::sync::OnceLock;
 
+use fearless_simd::Level;
+
 use super::arena::SliceAllocator;
 use super::line::Direction;
-use super::tetrahedron::{EdgeFunctions, Tetrahedron};
+use super::tetrahedron::{EdgeFunctions, Tetrahedron, outward_normals_at_once};
 use super::view_signs::FaceSigns;
 use super::view_space::eye_direction;
 use super::view_transform::ViewTransform;
-use crate::number::Real;
+use crate::number::{Bounded, Real};
 use crate::scene::Scene;
 
 /// The tetrahedra of a view.
@@ -74,5 +76,30 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
                 light_edges,
             }
         })
+    }
+}
+
+impl TetrahedraInView<'_, Bounded> {
+    /// Computes the tetrahedron of this index, unless it is computed: faster than
+    /// [`TetrahedraInView::get`] does.
+    pub(super) fn prepare(&self, index: usize, level: Level) {
+        self.computed[index].get_or_init(|| {
+            let normals =
+                |vertices: &_, right_handed| outward_normals_at_once(vertices, right_handed, level);
+            let (scene, height) = (self.scene, self.mirror_height);
+            let solid = self
+                .transform
+                .tetrahedron_with(scene, index, height, normals);
+            let (eye, signs) = (eye_direction(), self.face_signs[index]);
+            TetrahedronInView {
+                eye_edges: solid.edge_functions_at_once(&eye, signs, level),
+                light_edges: solid.edge_functions_at_once(
+                    &self.to_light,
+                    solid.facing_light,
+                    level,
+                ),
+                solid,
+            }
+        });
     }
 }

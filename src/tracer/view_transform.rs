@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::line::{Direction, Line};
 use super::shading::halfway;
 use super::surface::Surface;
-use super::tetrahedron::Tetrahedron;
+use super::tetrahedron::{Tetrahedron, outward_normals};
 use super::vector::Vector;
 use super::view_space::{
     EYE_Y, EYE_Z, PIXEL, coordinate, eye_direction, from_middle, reflect, reflect_direction,
@@ -108,6 +108,17 @@ impl<R: Real> ViewTransform<R> {
         index: usize,
         mirror_height: Option<R>,
     ) -> Tetrahedron<R> {
+        self.tetrahedron_with(scene, index, mirror_height, outward_normals)
+    }
+
+    /// The same with normals from another function.
+    pub(super) fn tetrahedron_with(
+        &self,
+        scene: &Scene,
+        index: usize,
+        mirror_height: Option<R>,
+        outward_normals: impl FnOnce(&[Vector<R>; 4], bool) -> [Vector<R>; 4],
+    ) -> Tetrahedron<R> {
         let (tetrahedron, facts) = (&scene.tetrahedra()[index], scene.facts());
         let vertices = tetrahedron
             .vertices
@@ -116,6 +127,7 @@ impl<R: Real> ViewTransform<R> {
         let right_handed = facts.right_handed[index] != mirror_height.is_some();
         Tetrahedron::new(
             vertices,
+            outward_normals(&vertices, right_handed),
             right_handed,
             facts.faces[index],
             facts.facing_light[index],

@@ -5,7 +5,14 @@ use std::cmp::Ordering;
 use super::{DoubleDouble, NO_UNDERFLOW, SUM};
 use crate::number::error_free::quick_two_sum;
 use crate::number::rounding::{ROUND_UP, UNDERFLOW};
-use crate::number::{Doubt, Real, round_enclosure, round_sum, sine};
+use crate::number::{Doubt, Real, Ring, products_summed, round_enclosure, round_sum, sine};
+
+impl Ring for DoubleDouble {
+    #[inline]
+    fn sum_of_products<const N: usize>(a: [DoubleDouble; N], b: [DoubleDouble; N]) -> DoubleDouble {
+        products_summed(a, b)
+    }
+}
 
 impl Real for DoubleDouble {
     type Doubt = Doubt;

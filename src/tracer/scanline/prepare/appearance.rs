@@ -91,7 +91,7 @@ pub(crate) fn late_faces<'l, 'f>(
         spare.reset();
         let view = source.picture.view(mirrored);
         let appearances = Appearances::new(source.picture, view, mirrored);
-        let mut parts = Builder::new(source.grid, color, u64::MAX, 0, spare);
+        let mut parts = Builder::new((source.grid, source.level), color, u64::MAX, 0, spare);
         let faces = appearances.front_faces(&late.outlined, late.tetrahedron, &mut parts);
         let memory = source.threads.get();
         let regions = parts.edge_table.regions();

@@ -1,6 +1,7 @@
 //! The parts of a frame while it is prepared.
 
 use bumpalo::Bump;
+use fearless_simd::Level;
 
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::edges::table::EdgeTableBuilder;
@@ -10,6 +11,7 @@ use crate::tracer::scanline::write::paint::Paints;
 /// The parts of a frame that surface and solids add to.
 pub(crate) struct Builder<'f, 'c> {
     pub(crate) grid: Grid,
+    pub(crate) level: Level,
     pub(crate) arena: &'f Bump,
     pub(crate) edge_table: EdgeTableBuilder<'f>,
     pub(crate) paints: Paints<'f, 'c>,
@@ -24,7 +26,7 @@ pub(crate) struct Builder<'f, 'c> {
 impl<'f, 'c> Builder<'f, 'c> {
     /// No parts yet, and room for so many regions. `color` tells the colour of a decision.
     pub(crate) fn new(
-        grid: Grid,
+        (grid, level): (Grid, Level),
         color: &'c dyn Fn(Decision) -> [f32; 3],
         late_from: u64,
         regions: usize,
@@ -32,6 +34,7 @@ impl<'f, 'c> Builder<'f, 'c> {
     ) -> Self {
         Builder {
             grid,
+            level,
             arena,
             edge_table: EdgeTableBuilder::new(regions, arena),
             paints: Paints::new(color, arena),

@@ -58,9 +58,9 @@ impl<'f> PreparedFrame<'f> {
         let grid = Grid::new(picture.size);
         // Few solids have more regions.
         let regions = 8 * picture.view.solid_count();
-        let mut parts = Builder::new(grid, color, crowd.late_from, regions, arena);
+        let mut parts = Builder::new((grid, level), color, crowd.late_from, regions, arena);
         let background = parts.paints.add(Decision::Background);
-        let mut outlines = Outlines::new(picture, &picture.view, None, grid, arena);
+        let mut outlines = Outlines::new(picture, &picture.view, None, (grid, level), arena);
         let is_crowded = outlines.depth_complexity() >= crowd.cull_from;
         let tiles = is_crowded.then(|| {
             let mut tiles = Tiles::new(grid, level, arena);

@@ -8,6 +8,7 @@
 use std::sync::OnceLock;
 
 use bumpalo_herd::Herd;
+use fearless_simd::Level;
 
 use crate::number::Bounded;
 use crate::tracer::pixel::Picture;
@@ -44,6 +45,7 @@ pub(crate) struct LateSource<'f> {
     /// The frame as f64 with a bound knows it.
     pub(crate) picture: &'f Picture<'f, Bounded>,
     pub(crate) grid: Grid,
+    pub(crate) level: Level,
     /// The memory for what threads make.
     pub(crate) threads: &'f Herd,
 }

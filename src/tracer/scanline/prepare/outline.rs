@@ -2,6 +2,7 @@
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
+use fearless_simd::Level;
 
 use crate::number::Bounded;
 use crate::scene::{Scene, Side, Solid};
@@ -33,6 +34,7 @@ pub(crate) struct Outlines<'v, 'f> {
     view: &'v View<'f, Bounded>,
     scene: &'f Scene,
     grid: Grid,
+    level: Level,
     arena: &'f Bump,
     /// The rows of the extent.
     rows: (u32, u32),
@@ -74,7 +76,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
         picture: &Picture<'f, Bounded>,
         view: &'v View<'f, Bounded>,
         within: Option<&Extent>,
-        grid: Grid,
+        (grid, level): (Grid, Level),
         arena: &'f Bump,
     ) -> Self {
         let (scene, stage) = (picture.scene, picture.stage);
@@ -105,6 +107,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
             view,
             scene,
             grid,
+            level,
             arena,
             rows: within.map_or((0, grid.size), |within| within.rows),
             numbers,
@@ -181,6 +184,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
     /// The outline of a solid.
     fn outline(&self, number: usize) -> Outlined<'f> {
         let (grid, arena, rows) = (self.grid, self.arena, self.rows_of(number));
+        self.view.prepare(number, self.level);
         match self.view.solid(number) {
             Solid::Sphere(sphere) => {
                 let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);

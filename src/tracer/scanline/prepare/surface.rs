@@ -74,7 +74,13 @@ impl<'f> PreparedSurface<'f> {
         let mirror = surface.mirror.as_ref();
         let mut mirrored = mirror.map(|mirror| {
             let within = Some(&surface.extent);
-            Outlines::new(picture, &mirror.view, within, grid, parts.arena)
+            Outlines::new(
+                picture,
+                &mirror.view,
+                within,
+                (grid, parts.level),
+                parts.arena,
+            )
         });
         if let Some(tiles) = tiles {
             let mut seen = tiles.seen_through(&outline, |y| depth.at(y).0, parts.arena);
