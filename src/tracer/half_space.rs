@@ -6,6 +6,7 @@ use crate::number::Real;
 use crate::scene::Support;
 
 /// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
+#[derive(Clone, Copy)]
 pub(super) struct HalfSpace<R> {
     /// Inward, of any length.
     pub(super) normal: Vector<R>,

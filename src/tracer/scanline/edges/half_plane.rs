@@ -1,7 +1,9 @@
 //! Pixels on one side of a straight line.
 
-use fearless_simd::Simd;
+use bumpalo::Bump;
+use bumpalo::collections::Vec as Growing;
 use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
@@ -9,6 +11,7 @@ use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
+use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{PIXEL, number_at};
 
 /// The pixels where constant + `per_x` X + `per_y` Y ≥ 0, or > 0.
@@ -109,19 +112,47 @@ impl HalfPlane {
 
     /// The pixels whose points on the plane lie in a half-space.
     pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
-        let n = half_space.normal;
+        HalfPlane::with(half_space, plane, heights(half_space, plane), grid)
+    }
+
+    /// The same for each of several half-spaces, four at once.
+    pub(crate) fn all_of<'f>(
+        half_spaces: impl Iterator<Item = HalfSpace<Bounded>>,
+        plane: &PixelPlane,
+        (grid, level): (Grid, Level),
+        arena: &'f Bump,
+    ) -> &'f [HalfPlane] {
+        let mut half_spaces = half_spaces.fuse();
+        let mut all = Growing::new_in(arena);
+        while let Some(first) = half_spaces.next() {
+            let others = [half_spaces.next(), half_spaces.next(), half_spaces.next()];
+            let count = 1 + others.iter().flatten().count();
+            let [b, c, d] = others.map(|other| other.unwrap_or(first));
+            let four = [first, b, c, d];
+            let heights = dispatch!(level, simd => four_heights(simd, &four, plane));
+            let new = four.iter().zip(heights).take(count);
+            all.extend(
+                new.map(|(half_space, heights)| HalfPlane::with(half_space, plane, heights, grid)),
+            );
+        }
+        all.into_bump_slice()
+    }
+
+    /// The pixels whose points on the plane lie in a half-space, given their heights over its
+    /// border.
+    fn with(
+        half_space: &HalfSpace<Bounded>,
+        plane: &PixelPlane,
+        heights: Heights,
+        grid: Grid,
+    ) -> HalfPlane {
         if half_space.support.is_some() && half_space.support == plane.support {
             // All points lie on the border.
             let zero = Bounded::exact(0.0);
             return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
         }
-        HalfPlane::new(
-            n.dot(plane.origin - half_space.at),
-            n.dot(plane.per_x),
-            n.dot(plane.per_y),
-            half_space.closed,
-            grid,
-        )
+        let [constant, per_x, per_y] = heights;
+        HalfPlane::new(constant, per_x, per_y, half_space.closed, grid)
     }
 
     /// Whether the pixel at X, Y is in the half-plane; `None` where that is in doubt.
@@ -205,4 +236,46 @@ impl HalfPlane {
         enclosure.possible = first(lanes.possible);
         enclosure.certain = first(lanes.certain);
     }
+}
+
+/// The height of the points of a plane over the border of a half-space: at X = Y = 0, and its
+/// change per X and per Y.
+type Heights = [Bounded; 3];
+
+fn heights(half_space: &HalfSpace<Bounded>, plane: &PixelPlane) -> Heights {
+    let n = half_space.normal;
+    [
+        n.dot(plane.origin - half_space.at),
+        n.dot(plane.per_x),
+        n.dot(plane.per_y),
+    ]
+}
+
+/// The same for four half-spaces.
+#[inline(always)]
+fn four_heights<S: Simd>(
+    simd: S,
+    [a, b, c, d]: &[HalfSpace<Bounded>; 4],
+    plane: &PixelPlane,
+) -> [Heights; 4] {
+    let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
+    if at.x.any_exact() {
+        // If y and z are exact, too, products may be, which is known only one by one.
+        return [
+            heights(a, plane),
+            heights(b, plane),
+            heights(c, plane),
+            heights(d, plane),
+        ];
+    }
+    let n = Vector::together(simd, [a.normal, b.normal, c.normal, d.normal]);
+    let constant = n.dot(Vector::splat(simd, plane.origin) - at).to_array();
+    let per_x = n.dot(Vector::splat(simd, plane.per_x)).to_array();
+    let per_y = n.dot(Vector::splat(simd, plane.per_y)).to_array();
+    [
+        [constant[0], per_x[0], per_y[0]],
+        [constant[1], per_x[1], per_y[1]],
+        [constant[2], per_x[2], per_y[2]],
+        [constant[3], per_x[3], per_y[3]],
+    ]
 }

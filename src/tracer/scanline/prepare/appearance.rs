@@ -284,7 +284,14 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         let casters = &self.picture.scene.facts().casters;
         let casters = casters.on(solid.number, Some(face)).iter().copied();
         let plane = &face_plane(&t.solid.inner_half_space(face), grid);
-        let solids = shadows_on(plane, self.view, casters, |_| false, grid, arena);
+        let solids = shadows_on(
+            plane,
+            self.view,
+            casters,
+            |_| false,
+            (grid, parts.level),
+            arena,
+        );
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);

@@ -4,6 +4,7 @@ use std::cell::LazyCell;
 use std::cmp::Ordering;
 
 use bumpalo::Bump;
+use fearless_simd::Level;
 
 use crate::number::Bounded;
 use crate::scene::{Side, Solid};
@@ -107,7 +108,7 @@ pub(crate) fn shadows_on<'f>(
     view: &View<'_, Bounded>,
     casters: impl Iterator<Item = u16>,
     is_ahead: impl Fn(usize) -> bool,
-    grid: Grid,
+    (grid, level): (Grid, Level),
     arena: &'f Bump,
 ) -> impl Iterator<Item = Region<'f>> {
     let to_light = view.shading.to_light;
@@ -125,11 +126,11 @@ pub(crate) fn shadows_on<'f>(
                 Region::new(collect(arena, before), Some(arena.alloc(ellipse)), grid)
             }
             Solid::Tetrahedron(t) => {
-                let plane = |half_space| HalfPlane::of(&half_space, plane, grid);
+                let screen = (grid, level);
                 let planes = if is_ahead {
-                    collect(arena, t.solid.met(&t.light_edges).map(plane))
+                    HalfPlane::all_of(t.solid.met(&t.light_edges), plane, screen, arena)
                 } else {
-                    collect(arena, t.solid.ahead(&t.light_edges).map(plane))
+                    HalfPlane::all_of(t.solid.ahead(&t.light_edges), plane, screen, arena)
                 };
                 Region::new(planes, None, grid)
             }

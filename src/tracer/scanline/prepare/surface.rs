@@ -59,7 +59,14 @@ impl<'f> PreparedSurface<'f> {
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();
         let casters = casters.into_iter().flat_map(SurfaceCasters::all).copied();
-        let cast = shadows_on(&plane, view, casters.clone(), is_ahead, grid, parts.arena);
+        let cast = shadows_on(
+            &plane,
+            view,
+            casters.clone(),
+            is_ahead,
+            (grid, parts.level),
+            parts.arena,
+        );
         // The half-planes of a tetrahedron's shadow do not tell in which rows it lies.
         let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light));
         let rows_of = |caster: u16| match view.solid(usize::from(caster)) {
