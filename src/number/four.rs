@@ -40,12 +40,6 @@ impl<S: Simd> FourBounded<S> {
         }
     }
 
-    /// Whether any of them is known exactly.
-    #[inline(always)]
-    pub(crate) fn any_exact(self) -> bool {
-        self.error.simd_eq(0.0).any_true()
-    }
-
     /// The four numbers.
     #[inline(always)]
     pub(crate) fn to_array(self) -> [Bounded; 4] {

@@ -222,7 +222,9 @@ impl<'f, R: Real> Picture<'f, R> {
             return Ok(color);
         }
         let face = match (view.solid(seen.solid.into()), seen.face) {
-            (Solid::Tetrahedron(t), Some(face)) => Some(t.solid.normal(face.into())),
+            (Solid::Tetrahedron(t), Some(face)) if !seen.in_shadow => {
+                Some(t.solid.normal(face.into()))
+            }
             _ => None,
         };
         let light = match normal.or(face.as_ref()) {

@@ -48,7 +48,7 @@ pub(super) struct EdgeFunctions<R> {
 
 impl<R> EdgeFunctions<R> {
     /// The faces that lines enter, in the order of their numbers.
-    pub(super) fn entered(&self) -> impl Iterator<Item = usize> {
+    pub(super) fn entered(&self) -> impl Iterator<Item = usize> + Clone + use<R> {
         faces(self, Ordering::Less)
     }
 
@@ -310,7 +310,10 @@ pub(super) fn certain_face_signs(
 }
 
 /// The faces whose n·d has this sign.
-fn faces<R>(functions: &EdgeFunctions<R>, face_signs: Ordering) -> impl Iterator<Item = usize> {
+fn faces<R>(
+    functions: &EdgeFunctions<R>,
+    face_signs: Ordering,
+) -> impl Iterator<Item = usize> + Clone + use<R> {
     functions
         .face_signs
         .into_iter()

@@ -122,7 +122,7 @@ fn check_tetrahedra(
             .met(&t.eye_edges)
             .zip(exact.solid.met(&exact.eye_edges));
         for (half_space, exact) in half_spaces {
-            let half_plane = HalfPlane::on_screen(&half_space, grid);
+            let half_plane = HalfPlane::of(&half_space, None, grid);
             for row in (0..SIZE).step_by(7) {
                 let y = grid.coordinate(row);
                 let all = [0.0, f64::from(SIZE)];

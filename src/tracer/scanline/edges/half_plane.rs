@@ -103,50 +103,62 @@ impl HalfPlane {
         }
     }
 
-    /// The pixels whose eye rays begin in a half-space.
-    pub(crate) fn on_screen(half_space: &HalfSpace<Bounded>, grid: Grid) -> HalfPlane {
-        let n = half_space.normal;
-        let constant = n.dot(screen_origin(grid) - half_space.at);
-        HalfPlane::new(constant, n.x, n.y, half_space.closed, grid)
-    }
-
     /// The pixels whose points on the plane lie in a half-space.
-    pub(crate) fn of(half_space: &HalfSpace<Bounded>, plane: &PixelPlane, grid: Grid) -> HalfPlane {
-        HalfPlane::with(half_space, plane, heights(half_space, plane), grid)
+    pub(crate) fn of(
+        half_space: &HalfSpace<Bounded>,
+        plane: Option<&PixelPlane>,
+        grid: Grid,
+    ) -> HalfPlane {
+        HalfPlane::with(half_space, plane, heights(half_space, plane, grid), grid)
     }
 
     /// The same for each of several half-spaces, four at once.
     pub(crate) fn all_of<'f>(
         half_spaces: impl Iterator<Item = HalfSpace<Bounded>>,
-        plane: &PixelPlane,
+        plane: Option<&PixelPlane>,
         (grid, level): (Grid, Level),
         arena: &'f Bump,
     ) -> &'f [HalfPlane] {
-        let mut half_spaces = half_spaces.fuse();
         let mut all = Growing::new_in(arena);
-        while let Some(first) = half_spaces.next() {
-            let others = [half_spaces.next(), half_spaces.next(), half_spaces.next()];
-            let count = 1 + others.iter().flatten().count();
-            let [b, c, d] = others.map(|other| other.unwrap_or(first));
-            let four = [first, b, c, d];
-            let heights = dispatch!(level, simd => four_heights(simd, &four, plane));
+        let mut add = |four: &[HalfSpace<Bounded>; 4], count: usize| {
+            // If all of a point is exact, so may products be, which is known only one by one.
+            let heights = if four.iter().any(|half_space| half_space.at.x.error() == 0.0) {
+                four.map(|half_space| heights(&half_space, plane, grid))
+            } else {
+                dispatch!(level, simd => four_heights(simd, four, plane, grid))
+            };
             let new = four.iter().zip(heights).take(count);
             all.extend(
                 new.map(|(half_space, heights)| HalfPlane::with(half_space, plane, heights, grid)),
             );
+        };
+        let mut waiting = None;
+        half_spaces.for_each(|half_space| {
+            let (four, count) = waiting.get_or_insert(([half_space; 4], 0));
+            four[*count] = half_space;
+            *count += 1;
+            if *count == 4 {
+                add(four, 4);
+                waiting = None;
+            }
+        });
+        if let Some((four, count)) = waiting {
+            add(&four, count);
         }
         all.into_bump_slice()
     }
 
-    /// The pixels whose points on the plane lie in a half-space, given their heights over its
+    /// The pixels whose points lie in a half-space, given their heights over its
     /// border.
     fn with(
         half_space: &HalfSpace<Bounded>,
-        plane: &PixelPlane,
+        plane: Option<&PixelPlane>,
         heights: Heights,
         grid: Grid,
     ) -> HalfPlane {
-        if half_space.support.is_some() && half_space.support == plane.support {
+        if half_space.support.is_some()
+            && half_space.support == plane.and_then(|plane| plane.support)
+        {
             // All points lie on the border.
             let zero = Bounded::exact(0.0);
             return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
@@ -238,17 +250,20 @@ impl HalfPlane {
     }
 }
 
-/// The height of the points of a plane over the border of a half-space: at X = Y = 0, and its
-/// change per X and per Y.
+/// The height of a plane's or the screen's points over the border of a half-space: at X = Y = 0,
+/// and its change per X and per Y.
 type Heights = [Bounded; 3];
 
-fn heights(half_space: &HalfSpace<Bounded>, plane: &PixelPlane) -> Heights {
-    let n = half_space.normal;
-    [
-        n.dot(plane.origin - half_space.at),
-        n.dot(plane.per_x),
-        n.dot(plane.per_y),
-    ]
+fn heights(half_space: &HalfSpace<Bounded>, plane: Option<&PixelPlane>, grid: Grid) -> Heights {
+    let (n, at) = (half_space.normal, half_space.at);
+    match plane {
+        Some(plane) => [
+            n.dot(plane.origin - at),
+            n.dot(plane.per_x),
+            n.dot(plane.per_y),
+        ],
+        None => [n.dot(screen_origin(grid) - at), n.x, n.y],
+    }
 }
 
 /// The same for four half-spaces.
@@ -256,26 +271,29 @@ fn heights(half_space: &HalfSpace<Bounded>, plane: &PixelPlane) -> Heights {
 fn four_heights<S: Simd>(
     simd: S,
     [a, b, c, d]: &[HalfSpace<Bounded>; 4],
-    plane: &PixelPlane,
+    plane: Option<&PixelPlane>,
+    grid: Grid,
 ) -> [Heights; 4] {
-    let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
-    if at.x.any_exact() {
-        // If y and z are exact, too, products may be, which is known only one by one.
-        return [
-            heights(a, plane),
-            heights(b, plane),
-            heights(c, plane),
-            heights(d, plane),
-        ];
-    }
     let n = Vector::together(simd, [a.normal, b.normal, c.normal, d.normal]);
-    let constant = n.dot(Vector::splat(simd, plane.origin) - at).to_array();
-    let per_x = n.dot(Vector::splat(simd, plane.per_x)).to_array();
-    let per_y = n.dot(Vector::splat(simd, plane.per_y)).to_array();
+    let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
+    let (constant, per_x, per_y) = match plane {
+        Some(plane) => (
+            n.dot(Vector::splat(simd, plane.origin) - at),
+            n.dot(Vector::splat(simd, plane.per_x)),
+            n.dot(Vector::splat(simd, plane.per_y)),
+        ),
+        None => (
+            n.dot(Vector::splat(simd, screen_origin(grid)) - at),
+            n.x,
+            n.y,
+        ),
+    };
+    let heights = Vector::new(constant, per_x, per_y).apart();
+    let [a, b, c, d] = heights;
     [
-        [constant[0], per_x[0], per_y[0]],
-        [constant[1], per_x[1], per_y[1]],
-        [constant[2], per_x[2], per_y[2]],
-        [constant[3], per_x[3], per_y[3]],
+        [a.x, a.y, a.z],
+        [b.x, b.y, b.z],
+        [c.x, c.y, c.z],
+        [d.x, d.y, d.z],
     ]
 }

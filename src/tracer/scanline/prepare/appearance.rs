@@ -232,17 +232,18 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         parts: &mut Builder<'f, '_>,
     ) -> FrontFaces<'f> {
         let (arena, grid) = (parts.arena, parts.grid);
-        let mut front_faces = Growing::with_capacity_in(solid.front_faces.len(), arena);
-        for face in solid.front_faces {
+        let faces = t.eye_edges.entered();
+        let mut front_faces = Growing::new_in(arena);
+        for face in faces.clone() {
             let mut shadows = Growing::new_in(arena);
-            if self.receives(solid.number, *face, t) {
-                shadows = self.shadows_on_face(solid, *face, t, parts);
+            if self.receives(solid.number, face, t) {
+                shadows = self.shadows_on_face(solid, face, t, parts);
             }
             let mut paint = |in_shadow| {
-                let decision = self.decision(solid.number, Some(*face), in_shadow);
+                let decision = self.decision(solid.number, Some(face), in_shadow);
                 parts.paints.add(decision)
             };
-            let outside = paint(self.has_shadows && t.solid.turned_away(*face));
+            let outside = paint(self.has_shadows && t.solid.turned_away(face));
             front_faces.push(FrontFace {
                 outside,
                 in_shadow: if shadows.is_empty() {
@@ -253,11 +254,12 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
                 shadows: parts.edge_table.add_receiver(shadows, solid.rows),
             });
         }
-        let index = |face: usize| solid.front_faces.iter().position(|other| *other == face);
+        let index = |face: usize| faces.clone().position(|other| other == face);
+        let firsts = t.solid.entered_pairs(&t.eye_edges).map(|(_, first)| first);
+        let creases = HalfPlane::all_of(firsts, None, (grid, parts.level), arena);
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
-        let pairs = t.solid.entered_pairs(&t.eye_edges);
-        let pairs = pairs.filter_map(|((i, j), first)| {
-            let crease = arena.alloc([HalfPlane::on_screen(&first, grid)]);
+        let pairs = t.solid.entered_pairs(&t.eye_edges).zip(creases.chunks(1));
+        let pairs = pairs.filter_map(|(((i, j), _), crease)| {
             let crease = Region::new(crease, None, grid)
                 .within(solid.rows)
                 .clipped(solid.outline);

@@ -24,8 +24,6 @@ pub(crate) struct Outlined<'f> {
     pub(crate) number: usize,
     pub(crate) outline: Region<'f>,
     pub(crate) depth: Depth<'f>,
-    /// The face numbers of a tetrahedron's front faces.
-    pub(crate) front_faces: &'f [usize],
 }
 
 /// The solids that are seen directly, or in the mirror, within an extent of the screen.
@@ -54,8 +52,6 @@ pub(crate) struct OutlinedFaces<'f> {
     /// The half-planes of the outline, and its rows.
     pub(crate) outline: &'f [HalfPlane],
     pub(crate) rows: (u32, u32),
-    /// The numbers of the front faces.
-    pub(crate) front_faces: &'f [usize],
 }
 
 impl<'f> Outlined<'f> {
@@ -65,7 +61,6 @@ impl<'f> Outlined<'f> {
             number: self.number,
             outline: self.outline.half_planes(),
             rows: self.outline.rows(),
-            front_faces: self.front_faces,
         }
     }
 }
@@ -193,21 +188,18 @@ impl<'v, 'f> Outlines<'v, 'f> {
                     number,
                     depth: Depth::of_sphere(sphere.center, ellipse, sphere.support, grid),
                     outline: Region::new(&[], Some(ellipse), grid).within(rows),
-                    front_faces: &[],
                 }
             }
             Solid::Tetrahedron(t) => {
                 let met = t.solid.met(&t.eye_edges);
-                let met = met.map(|half_space| HalfPlane::on_screen(&half_space, grid));
-                let front_faces = collect(arena, t.eye_edges.entered());
-                let faces = front_faces.iter();
+                let met = HalfPlane::all_of(met, None, (grid, self.level), arena);
+                let faces = t.eye_edges.entered();
                 let depths =
-                    faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(*face), grid));
+                    faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(face), grid));
                 Outlined {
                     number,
-                    outline: Region::new(collect(arena, met), None, grid).within(rows),
+                    outline: Region::new(met, None, grid).within(rows),
                     depth: Depth::FrontFaces(collect(arena, depths)),
-                    front_faces,
                 }
             }
         }

@@ -91,7 +91,7 @@ impl<'p> SurfaceShadow<'p> {
         arena: &'f Bump,
     ) -> Option<Region<'f>> {
         let planes = self.on(solid)?;
-        let planes = planes.map(|half_space| HalfPlane::of(&half_space, plane, grid));
+        let planes = planes.map(|half_space| HalfPlane::of(&half_space, Some(plane), grid));
         let in_doubt = self.rise.is_eq().then_some(HalfPlane::IN_DOUBT);
         Some(Region::new(
             collect(arena, planes.chain(in_doubt)),
@@ -116,17 +116,18 @@ pub(crate) fn shadows_on<'f>(
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
         let is_ahead = is_ahead(caster);
+        view.prepare(caster, level);
         match view.solid(caster) {
             Solid::Sphere(sphere) => {
                 let before = (!is_ahead).then(|| sphere.before(&to_light));
                 let before = before
                     .iter()
-                    .map(|half_space| HalfPlane::of(half_space, plane, grid));
+                    .map(|half_space| HalfPlane::of(half_space, Some(plane), grid));
                 let ellipse = lines.meet(sphere, grid);
                 Region::new(collect(arena, before), Some(arena.alloc(ellipse)), grid)
             }
             Solid::Tetrahedron(t) => {
-                let screen = (grid, level);
+                let (plane, screen) = (Some(plane), (grid, level));
                 let planes = if is_ahead {
                     HalfPlane::all_of(t.solid.met(&t.light_edges), plane, screen, arena)
                 } else {
