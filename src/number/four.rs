@@ -40,6 +40,12 @@ impl<S: Simd> FourBounded<S> {
         }
     }
 
+    /// Whether all of them are certainly below 0.
+    #[inline(always)]
+    pub(crate) fn all_negative(self) -> bool {
+        self.value.simd_lt(-self.error).all_true()
+    }
+
     /// The four numbers.
     #[inline(always)]
     pub(crate) fn to_array(self) -> [Bounded; 4] {
@@ -121,9 +127,12 @@ impl<S: Simd> Ring for FourBounded<S> {
 
 #[cfg(test)]
 mod tests {
+    use std::cmp::Ordering;
+
     use fearless_simd::{Level, dispatch};
 
     use super::*;
+    use crate::number::Real as _;
     use crate::random::Random;
 
     /// A number with an error, of any magnitude that a frame has.
@@ -163,6 +172,8 @@ mod tests {
                     assert_eq!(bits((p[0] + q[0]).to_array()), each(&|a, b| a[0] + b[0]));
                     assert_eq!(bits((p[0] - q[0]).to_array()), each(&|a, b| a[0] - b[0]));
                     assert_eq!(bits((-p[0]).to_array()), each(&|a, _| -a[0]));
+                    let negative = |lane: usize| (sum.to_array()[lane].sign()) == Ok(Ordering::Less);
+                    assert_eq!(sum.all_negative(), (0..4).all(negative));
                     let same = FourBounded::splat(simd, a[0][0]);
                     assert_eq!(bits(same.to_array()), bits([a[0][0]; 4]));
                 });

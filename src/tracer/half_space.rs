@@ -1,8 +1,10 @@
 //! Half-spaces, and which lines begin in them.
 
+use fearless_simd::{Level, dispatch};
+
 use super::line::Line;
 use super::vector::Vector;
-use crate::number::Real;
+use crate::number::{Bounded, Real};
 use crate::scene::Support;
 
 /// The points x with normal · (x − at) ≥ 0, or > 0 where its border does not belong to it.
@@ -27,5 +29,15 @@ impl<R: Real> HalfSpace<R> {
         }
         let sign = self.normal.dot(line.origin - self.at).sign()?;
         Ok(sign.is_gt() || (self.closed && sign.is_eq()))
+    }
+}
+
+impl HalfSpace<Bounded> {
+    /// Whether all of these points certainly lie outside, and not on the border.
+    pub(super) fn misses(&self, points: [Vector<Bounded>; 4], level: Level) -> bool {
+        dispatch!(level, simd => {
+            let [normal, at] = [Vector::splat(simd, self.normal), Vector::splat(simd, self.at)];
+            normal.dot(Vector::together(simd, points) - at).all_negative()
+        })
     }
 }

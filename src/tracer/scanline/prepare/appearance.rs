@@ -285,15 +285,15 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         let (arena, grid) = (parts.arena, parts.grid);
         let casters = &self.picture.scene.facts().casters;
         let casters = casters.on(solid.number, Some(face)).iter().copied();
-        let plane = &face_plane(&t.solid.inner_half_space(face), grid);
-        let solids = shadows_on(
-            plane,
-            self.view,
-            casters,
-            |_| false,
-            (grid, parts.level),
-            arena,
-        );
+        let behind = t.solid.inner_half_space(face);
+        let plane = &face_plane(&behind, grid);
+        // Rays to the light leave the face.
+        let is_ahead = |caster: usize| match self.view.solid(caster) {
+            Solid::Sphere(_) => false,
+            Solid::Tetrahedron(t) => behind.misses(t.solid.vertices(), parts.level),
+        };
+        let screen = (grid, parts.level);
+        let solids = shadows_on(plane, self.view, casters, is_ahead, screen, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);

@@ -115,8 +115,8 @@ pub(crate) fn shadows_on<'f>(
     let lines = LazyCell::new(move || ParallelLines::new(plane, to_light));
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
-        let is_ahead = is_ahead(caster);
         view.prepare(caster, level);
+        let is_ahead = is_ahead(caster);
         match view.solid(caster) {
             Solid::Sphere(sphere) => {
                 let before = (!is_ahead).then(|| sphere.before(&to_light));
