@@ -40,6 +40,18 @@ impl<S: Simd> FourBounded<S> {
         }
     }
 
+    /// The approximations.
+    #[inline(always)]
+    pub(crate) fn value(self) -> f64x4<S> {
+        self.value
+    }
+
+    /// How far the truths can be from the approximations.
+    #[inline(always)]
+    pub(crate) fn error(self) -> f64x4<S> {
+        self.error
+    }
+
     /// Whether all of them are certainly below 0.
     #[inline(always)]
     pub(crate) fn all_negative(self) -> bool {

@@ -3,10 +3,10 @@
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, dispatch, f64x4};
 
 use crate::number::rounding::{INFLATION, U};
-use crate::number::{Bounded, Real};
+use crate::number::{Bounded, FourBounded, Real, Ring};
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
@@ -67,6 +67,20 @@ impl HalfPlane {
         closed: bool,
         grid: Grid,
     ) -> Self {
+        dispatch!(Level::baseline(), simd => {
+            let height = [constant, per_x, per_y].map(|term| FourBounded::splat(simd, term));
+            let [half_plane, ..] = HalfPlane::four(simd, height, grid);
+            HalfPlane { closed, ..half_plane }
+        })
+    }
+
+    /// Four closed half-planes.
+    #[inline(always)]
+    fn four<S: Simd>(
+        simd: S,
+        [constant, per_x, per_y]: Height<FourBounded<S>>,
+        grid: Grid,
+    ) -> [HalfPlane; 4] {
         let max = grid.max;
         // The part of the sum's error that comes from the coefficients.
         let carried = constant.error() + (per_x.error() + per_y.error()) * max;
@@ -76,40 +90,61 @@ impl HalfPlane {
         // part of the sum's error. The inverse of 3 · per_x rounds by 2u, the root's two numbers by
         // 2u more, the product with Y and the sum with it by u each: less than 8u of the terms'
         // magnitudes, and of N/2 and the root, which is below 3N where it matters.
-        let inverse = 1.0 / (PIXEL * per_x.value());
-        let root = Root {
-            at: grid.half - constant.value() * inverse,
-            per_y: -(per_y.value() * inverse),
-            slack: ((carried + 8.0 * U * magnitude) * inverse.abs()
-                + 16.0 * U * 3.0 * f64::from(grid.size))
-                * INFLATION,
-        };
-        let is_finite = root.at.is_finite() && root.per_y.is_finite() && root.slack.is_finite();
+        let inverse = f64x4::splat(simd, 1.0) / (per_x.value() * PIXEL);
+        let at = -(constant.value() * inverse) + grid.half;
+        let root_per_y = -(per_y.value() * inverse);
+        let slack = ((carried + magnitude * (8.0 * U)) * inverse.abs()
+            + 16.0 * U * 3.0 * f64::from(grid.size))
+            * INFLATION;
+        let is_finite = at.abs().simd_lt(f64::INFINITY)
+            & root_per_y.abs().simd_lt(f64::INFINITY)
+            & slack.simd_lt(f64::INFINITY);
         // The sum rounds by less than 2u of its terms twice.
-        let error = (carried + 4.0 * U * magnitude) * INFLATION;
-        let border = match inverse > 0.0 {
-            _ if !is_finite || magnitude_of_x <= error => Border::Horizontal {
-                error: (error + magnitude_of_x) * INFLATION,
-            },
-            true => Border::Left(root),
-            false => Border::Right(root),
-        };
-        HalfPlane {
-            constant,
-            per_x,
-            per_y,
-            closed,
-            border,
+        let error = (carried + magnitude * (4.0 * U)) * INFLATION;
+        let is_sloping = (is_finite & !magnitude_of_x.simd_le(error)).to_bitmask();
+        let is_left = inverse.simd_gt(0.0).to_bitmask();
+        let level_error = (error + magnitude_of_x) * INFLATION;
+        let terms = [constant.to_array(), per_x.to_array(), per_y.to_array()];
+        let mut half_planes = [HalfPlane::IN_DOUBT; 4];
+        for (i, half_plane) in half_planes.iter_mut().enumerate() {
+            let root = Root {
+                at: at.as_slice()[i],
+                per_y: root_per_y.as_slice()[i],
+                slack: slack.as_slice()[i],
+            };
+            let border = match (is_sloping >> i & 1, is_left >> i & 1) {
+                (0, _) => Border::Horizontal {
+                    error: level_error.as_slice()[i],
+                },
+                (_, 0) => Border::Right(root),
+                _ => Border::Left(root),
+            };
+            *half_plane = HalfPlane {
+                constant: terms[0][i],
+                per_x: terms[1][i],
+                per_y: terms[2][i],
+                closed: true,
+                border,
+            };
         }
+        half_planes
     }
 
-    /// The pixels whose points on the plane lie in a half-space.
+    /// The pixels whose points on the plane, or on the screen, lie in a half-space.
     pub(crate) fn of(
         half_space: &HalfSpace<Bounded>,
         plane: Option<&PixelPlane>,
         grid: Grid,
     ) -> HalfPlane {
-        HalfPlane::with(half_space, plane, heights(half_space, plane, grid), grid)
+        let closed = half_space.closed;
+        if is_border(half_space, plane) {
+            let zero = Bounded::exact(0.0);
+            return HalfPlane::new(zero, zero, zero, closed, grid);
+        }
+        let changes = plane.map(|plane| [plane.per_x, plane.per_y]);
+        let origin = origin(plane, grid) - half_space.at;
+        let [constant, per_x, per_y] = height(half_space.normal, origin, changes);
+        HalfPlane::new(constant, per_x, per_y, closed, grid)
     }
 
     /// The same for each of several half-spaces, four at once.
@@ -121,16 +156,17 @@ impl HalfPlane {
     ) -> &'f [HalfPlane] {
         let mut all = Growing::new_in(arena);
         let mut add = |four: &[HalfSpace<Bounded>; 4], count: usize| {
-            // If all of a point is exact, so may products be, which is known only one by one.
-            let heights = if four.iter().any(|half_space| half_space.at.x.error() == 0.0) {
-                four.map(|half_space| heights(&half_space, plane, grid))
-            } else {
-                dispatch!(level, simd => four_heights(simd, four, plane, grid))
+            let is_special = |half_space: &HalfSpace<Bounded>| {
+                // If all of a point is exact, so may products be, which is known only one by one.
+                half_space.at.x.error() == 0.0 || is_border(half_space, plane)
             };
-            let new = four.iter().zip(heights).take(count);
-            all.extend(
-                new.map(|(half_space, heights)| HalfPlane::with(half_space, plane, heights, grid)),
-            );
+            if four.iter().any(is_special) {
+                let four = four[..count].iter();
+                all.extend(four.map(|half_space| HalfPlane::of(half_space, plane, grid)));
+            } else {
+                let four = dispatch!(level, simd => HalfPlane::four_of(simd, four, plane, grid));
+                all.extend_from_slice_copy(&four[..count]);
+            }
         };
         let mut waiting = None;
         half_spaces.for_each(|half_space| {
@@ -148,23 +184,35 @@ impl HalfPlane {
         all.into_bump_slice()
     }
 
-    /// The pixels whose points lie in a half-space, given their heights over its
-    /// border.
-    fn with(
-        half_space: &HalfSpace<Bounded>,
+    /// The same for four half-spaces whose points are not exact, and whose borders do not hold the
+    /// plane.
+    #[inline(always)]
+    fn four_of<S: Simd>(
+        simd: S,
+        half_spaces: &[HalfSpace<Bounded>; 4],
         plane: Option<&PixelPlane>,
-        heights: Heights,
         grid: Grid,
-    ) -> HalfPlane {
-        if half_space.support.is_some()
-            && half_space.support == plane.and_then(|plane| plane.support)
-        {
-            // All points lie on the border.
-            let zero = Bounded::exact(0.0);
-            return HalfPlane::new(zero, zero, zero, half_space.closed, grid);
+    ) -> [HalfPlane; 4] {
+        let [a, b, c, d] = half_spaces;
+        let n = Vector::together(simd, [a.normal, b.normal, c.normal, d.normal]);
+        let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
+        #[allow(
+            clippy::manual_map,
+            reason = "a closure is compiled without vector instructions"
+        )]
+        let changes = match plane {
+            Some(plane) => Some([
+                Vector::splat(simd, plane.per_x),
+                Vector::splat(simd, plane.per_y),
+            ]),
+            None => None,
+        };
+        let origin = Vector::splat(simd, origin(plane, grid)) - at;
+        let mut half_planes = HalfPlane::four(simd, height(n, origin, changes), grid);
+        for (half_plane, half_space) in half_planes.iter_mut().zip(half_spaces) {
+            half_plane.closed = half_space.closed;
         }
-        let [constant, per_x, per_y] = heights;
-        HalfPlane::new(constant, per_x, per_y, half_space.closed, grid)
+        half_planes
     }
 
     /// Whether the pixel at X, Y is in the half-plane; `None` where that is in doubt.
@@ -250,50 +298,28 @@ impl HalfPlane {
     }
 }
 
-/// The height of a plane's or the screen's points over the border of a half-space: at X = Y = 0,
-/// and its change per X and per Y.
-type Heights = [Bounded; 3];
-
-fn heights(half_space: &HalfSpace<Bounded>, plane: Option<&PixelPlane>, grid: Grid) -> Heights {
-    let (n, at) = (half_space.normal, half_space.at);
-    match plane {
-        Some(plane) => [
-            n.dot(plane.origin - at),
-            n.dot(plane.per_x),
-            n.dot(plane.per_y),
-        ],
-        None => [n.dot(screen_origin(grid) - at), n.x, n.y],
-    }
+/// Whether all points of a plane lie on the border of a half-space.
+fn is_border(half_space: &HalfSpace<Bounded>, plane: Option<&PixelPlane>) -> bool {
+    let support = plane.and_then(|plane| plane.support);
+    support.is_some() && half_space.support == support
 }
 
-/// The same for four half-spaces.
+/// The point of a plane, or of the screen, at X = Y = 0.
+fn origin(plane: Option<&PixelPlane>, grid: Grid) -> Vector<Bounded> {
+    plane.map_or_else(|| screen_origin(grid), |plane| plane.origin)
+}
+
+/// The height of points over the border of a half-space with this normal: at X = Y = 0, and its
+/// change per X and per Y.
+type Height<R> = [R; 3];
+
+/// `origin` is the point at X = Y = 0, seen from the border. `changes` are those of the points per
+/// X and per Y; `None` on the screen.
 #[inline(always)]
-fn four_heights<S: Simd>(
-    simd: S,
-    [a, b, c, d]: &[HalfSpace<Bounded>; 4],
-    plane: Option<&PixelPlane>,
-    grid: Grid,
-) -> [Heights; 4] {
-    let n = Vector::together(simd, [a.normal, b.normal, c.normal, d.normal]);
-    let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
-    let (constant, per_x, per_y) = match plane {
-        Some(plane) => (
-            n.dot(Vector::splat(simd, plane.origin) - at),
-            n.dot(Vector::splat(simd, plane.per_x)),
-            n.dot(Vector::splat(simd, plane.per_y)),
-        ),
-        None => (
-            n.dot(Vector::splat(simd, screen_origin(grid)) - at),
-            n.x,
-            n.y,
-        ),
-    };
-    let heights = Vector::new(constant, per_x, per_y).apart();
-    let [a, b, c, d] = heights;
-    [
-        [a.x, a.y, a.z],
-        [b.x, b.y, b.z],
-        [c.x, c.y, c.z],
-        [d.x, d.y, d.z],
-    ]
+fn height<R: Ring>(n: Vector<R>, origin: Vector<R>, changes: Option<[Vector<R>; 2]>) -> Height<R> {
+    let constant = n.dot(origin);
+    match changes {
+        Some([per_x, per_y]) => [constant, n.dot(per_x), n.dot(per_y)],
+        None => [constant, n.x, n.y],
+    }
 }
