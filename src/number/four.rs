@@ -184,10 +184,32 @@ mod tests {
                     assert_eq!(bits((p[0] + q[0]).to_array()), each(&|a, b| a[0] + b[0]));
                     assert_eq!(bits((p[0] - q[0]).to_array()), each(&|a, b| a[0] - b[0]));
                     assert_eq!(bits((-p[0]).to_array()), each(&|a, _| -a[0]));
-                    let negative = |lane: usize| (sum.to_array()[lane].sign()) == Ok(Ordering::Less);
-                    assert_eq!(sum.all_negative(), (0..4).all(negative));
                     let same = FourBounded::splat(simd, a[0][0]);
                     assert_eq!(bits(same.to_array()), bits([a[0][0]; 4]));
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn four_numbers_are_negative_where_each_certainly_is() {
+        let number = |value, error| Bounded { value, error };
+        let certain = number(-1.0, 0.5);
+        let others = [
+            (-1.0, 0.9),
+            (-1.0, 1.0),
+            (-1.0, 2.0),
+            (0.0, 0.0),
+            (1.0, 0.5),
+        ];
+        for level in [Level::new(), Level::baseline(), Level::fallback()] {
+            for (lane, (value, error)) in (0..4).flat_map(|lane| others.map(|other| (lane, other)))
+            {
+                let mut four = [certain; 4];
+                four[lane] = number(value, error);
+                let expected = four[lane].sign() == Ok(Ordering::Less);
+                dispatch!(level, simd => {
+                    assert_eq!(FourBounded::new(simd, four).all_negative(), expected);
                 });
             }
         }
