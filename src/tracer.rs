@@ -391,15 +391,15 @@ impl Tracer {
         let progress = self.progress();
         self.each_band(target, |first, band, _| {
             let mut tally = Tally::default();
-            for (number, row) in (first..).zip(band.split(1)) {
-                if progress.is_cancelled() {
-                    break;
-                }
+            'rows: for (number, row) in (first..).zip(band.split(1)) {
                 if let Some(history) = row.history.and_then(<[RowHistory]>::first_mut) {
                     history.is_written = true;
                 }
                 let mut decisions = row.decisions.into_iter().flatten();
                 for (column, sample) in row.samples.chunks_exact_mut(3).enumerate() {
+                    if progress.is_cancelled() {
+                        break 'rows;
+                    }
                     let ((decision, color), rung) = pixels.pixel(column as u32, number);
                     tally.count(rung);
                     sample.copy_from_slice(&color);

@@ -121,6 +121,8 @@ impl Casters {
         };
         let casters = self.projections.overlapping(receiver).filter(is_caster);
         let mut casters: Vec<u16> = casters.map(|caster| caster as u16).collect();
+        // They live as long as the scene.
+        casters.shrink_to_fit();
         casters.sort_unstable();
         casters
     }

@@ -21,7 +21,7 @@ impl Progress {
         self.0.rows.load(Relaxed)
     }
 
-    /// Ends the frame that is traced now after the row that each thread is in, with
+    /// Ends the frame that is traced now, within the row that each thread is in or after it, with
     /// [`TraceError::Cancelled`](super::TraceError::Cancelled). The frames after it are traced as
     /// ever; between frames this has no effect.
     pub fn cancel(&self) {

@@ -36,9 +36,11 @@
 //!   order from one row to the next.
 //! - `faces.rs` divides what a row shows of a tetrahedron on which many shadows may fall: its
 //!   creases and shadows are no active edges. They are prepared when a row first shows the solid
-//!   (`late_faces`), since most solids of such a crowd are hidden.
-//! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
-//!   by a separating plane (`separation`) or by a depth test (`depth_test`).
+//!   (`late_faces`), since most solids of such a crowd are hidden, and kept in little memory
+//!   (`edges/coarse`), since there may be millions.
+//! - `visibility/` resolves a gap: which regions cover it (`coverage`; `counted` for late faces),
+//!   and which solid is in front by a separating plane (`separation`) or a depth test
+//!   (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
 //!   bounds on its errors for the certified kernel and without for the others (`policy`). The
 //!   columns of a sphere that face the light, and those that may have a highlight, are found first
@@ -87,6 +89,7 @@ mod visibility;
 mod write;
 
 use std::ops::Range;
+use std::sync::atomic::AtomicUsize;
 
 use bumpalo::Bump;
 use fearless_simd::Level;
@@ -102,7 +105,6 @@ use faces::FaceSplitter;
 use grid::Columns;
 pub(super) use grid::ROWS;
 use low::LowEdges;
-use prepare::appearance::late_faces;
 use prepare::frame::{Crowd, PreparedFrame};
 use prepare::late_faces::{LateFaces, LateSource};
 use prepare::solids::Appearance;
@@ -121,6 +123,8 @@ const CROWD: Crowd = Crowd {
     cull_from: 4,
     low_from: 4.0,
     late_from: 4,
+    late_bytes: 160 << 20,
+    late_edges: 1 << 20,
 };
 
 /// A frame, ready to be traced row by row.
@@ -129,6 +133,8 @@ pub(super) struct RowTracer<'f> {
     pixels: &'f dyn RowPixels,
     frame: PreparedFrame<'f>,
     late: LateSource<'f>,
+    /// The number of edges of late faces from which on a thread forgets them.
+    late_edges: usize,
     level: Level,
     precision: Precision,
 }
@@ -177,11 +183,14 @@ impl<'f> RowTracer<'f> {
         RowTracer {
             pixels,
             late: LateSource {
-                picture,
+                pixels,
                 grid: frame.grid,
                 level,
                 threads: &arena.threads,
+                most: crowd.late_bytes,
+                taken: AtomicUsize::new(0),
             },
+            late_edges: crowd.late_edges,
             frame,
             level,
             precision,
@@ -196,7 +205,10 @@ impl<'f> RowTracer<'f> {
         scratch.low.begin(&self.frame.edge_table);
         scratch.depth_tests.clear();
         scratch.painters.shader.begin(self.frame.shaded_spheres);
-        scratch.painters.face_splitter.begin(self.frame.late_faces);
+        scratch
+            .painters
+            .face_splitter
+            .begin(self.frame.late_faces, self.late_edges);
     }
 
     /// Traces neighbouring rows into their samples and, if given, decisions. Returns what
@@ -223,6 +235,7 @@ impl<'f> RowTracer<'f> {
             history,
             pending: None,
             tally: Tally::default(),
+            progress,
         };
         let mut traced = 0;
         for number in rows {
@@ -343,7 +356,7 @@ impl<'f> RowTracer<'f> {
             }
             Shown::Faces { mirrored, solid } => {
                 if let Appearance::LateFaces(late) = self.frame.solids(mirrored).appearance(solid) {
-                    self.write_faces(writer, columns, mirrored, late, painters);
+                    self.write_faces(writer, columns, late, painters);
                 }
             }
             Shown::InDoubt => writer.decide(columns.0..columns.1, self.pixels),
@@ -356,15 +369,23 @@ impl<'f> RowTracer<'f> {
         &'r self,
         writer: &mut RowWriter<'r>,
         columns: Columns,
-        mirrored: bool,
         late: &'r LateFaces<'f>,
         painters: &mut Painters,
     ) {
-        let color = |decision| self.pixels.color(decision);
-        let faces = late_faces(late, &self.late, mirrored, &color, &mut painters.spare);
-        let (row, level, grid) = (writer.row, self.level, self.frame.grid);
-        let splitter = &mut painters.face_splitter;
-        for (columns, shows) in splitter.split((late.number, faces), row, columns, level, grid) {
+        // The faces that a row is the first to show may take seconds. A row that is not whole is
+        // never seen.
+        if writer.progress.is_cancelled() {
+            return;
+        }
+        let Painters {
+            face_splitter,
+            spare,
+            ..
+        } = painters;
+        let faces = late.get(&self.late, spare);
+        let cross = |first, edges: &mut _| late.cross(faces, first, edges, &self.late, spare);
+        let numbered = (late.number, faces);
+        for (columns, shows) in face_splitter.split(numbered, writer.row, columns, cross) {
             match shows {
                 Shown::Paint(paint) => writer.fill(columns, &faces.paints[paint]),
                 _ => writer.decide(columns.0..columns.1, self.pixels),

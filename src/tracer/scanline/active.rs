@@ -121,7 +121,7 @@ pub(crate) struct ActiveEdges {
 impl ActiveEdges {
     /// Prepares for rows of a frame.
     pub(crate) fn begin(&mut self, table: &EdgeTable<'_>, grid: Grid) {
-        let count = table.regions.kinds.len();
+        let count = table.regions.kinds.all.len();
         self.first = None;
         self.band_edges.clear();
         self.band_edges.resize(count, BandEdges::None);
@@ -131,7 +131,7 @@ impl ActiveEdges {
         self.size = grid.size;
         self.is_changed.clear();
         self.is_changed.resize(count, false);
-        self.coverage.clear(&table.regions);
+        self.coverage.clear(&table.regions.kinds);
         self.edges.clear();
         self.forget();
     }
@@ -284,7 +284,7 @@ impl ActiveEdges {
         for gap in 0..self.gaps.len() {
             let to = self.sorted_columns[gap][row];
             if self.gaps[gap] == Packed::UNRESOLVED && from < to {
-                self.coverage.look(&table.regions);
+                self.coverage.look(&table.regions.kinds);
                 self.gaps[gap] = Packed::new(resolve(&self.coverage));
             }
             from = to;

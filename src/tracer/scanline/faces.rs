@@ -1,11 +1,11 @@
 //! What a row shows of late faces: the creases and shadows that divide a span.
 
-use fearless_simd::Level;
+use std::ops::Range;
 
-use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
+use crate::tracer::scanline::grid::{Columns, ROWS};
 use crate::tracer::scanline::prepare::late_faces::SplitFaces;
 use crate::tracer::scanline::row_edges::RowEdges;
-use crate::tracer::scanline::visibility::coverage::Coverage;
+use crate::tracer::scanline::visibility::counted::CountedCoverage;
 use crate::tracer::scanline::visibility::resolve::front_face;
 use crate::tracer::scanline::visibility::visible::Shown;
 
@@ -14,85 +14,107 @@ use crate::tracer::scanline::visibility::visible::Shown;
 pub(crate) struct FaceSplitter {
     /// The first row of the band.
     first: Option<u32>,
-    /// How many of `slots` are in use in the band.
-    used: usize,
+    /// The number of edges from which on they are forgotten before others are added.
+    enough: usize,
     slots: Vec<Slot>,
     /// By the number of late faces, the slot that they had last.
     slot_of: Vec<u32>,
-    /// The numbers of the regions that reach the band, while they are crossed.
-    reaching: Vec<u32>,
-    coverage: Coverage,
+    /// The edges of all faces that have slots.
+    edges: RowEdges,
+    coverage: CountedCoverage,
     parts: Vec<(Columns, Shown)>,
 }
 
-/// The edges of late faces in the band.
-#[derive(Default)]
+/// Where the edges of late faces lie.
 struct Slot {
     /// The number of the late faces.
     number: usize,
-    edges: RowEdges,
+    /// Where they begin among the edges of each row of the band, and where they end.
+    begin: [usize; ROWS],
+    end: [usize; ROWS],
+}
+
+impl Slot {
+    fn edges(&self, row: u32) -> Range<usize> {
+        let row = row as usize % ROWS;
+        self.begin[row]..self.end[row]
+    }
 }
 
 impl FaceSplitter {
-    /// Prepares for rows of a frame in which so many solids have late faces.
-    pub(crate) fn begin(&mut self, count: usize) {
+    /// Prepares for rows of a frame in which so many solids have late faces. `enough` edges are
+    /// forgotten before others are added: no crowd takes more memory than they and the edges of
+    /// one solid.
+    pub(crate) fn begin(&mut self, count: usize, enough: usize) {
         self.first = None;
+        self.enough = enough;
         self.slot_of.resize(count, 0);
     }
 
-    /// What a row shows in columns that show the late faces of this number, from the left.
+    /// What a row shows in columns that show the late faces of this number, from the left. `cross`
+    /// adds their edges in the band of rows from the given one on.
     pub(crate) fn split(
         &mut self,
         (number, faces): (usize, &SplitFaces<'_>),
         row: u32,
         columns: Columns,
-        level: Level,
-        grid: Grid,
+        cross: impl FnOnce(u32, &mut RowEdges),
     ) -> impl Iterator<Item = (Columns, Shown)> {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
             self.first = Some(first);
-            self.used = 0;
+            self.forget();
         }
-        let slot = self.slot_of[number] as usize;
-        let is_kept = slot < self.used && self.slots[slot].number == number;
-        let slot = if is_kept { slot } else { self.used };
-        if !is_kept {
-            if slot == self.slots.len() {
-                self.slots.push(Slot::default());
-            }
-            self.used += 1;
-            self.slot_of[number] = slot as u32;
-            self.slots[slot].number = number;
-            let regions = (0..).zip(faces.regions.all);
-            let reaching = regions.filter(|(_, region)| {
-                let (from, to) = region.rows();
-                from < first + ROWS as u32 && first < to
-            });
-            self.reaching.clear();
-            self.reaching.extend(reaching.map(|(number, _)| number));
-            let edges = &mut self.slots[slot].edges;
-            edges.cross(&faces.regions, &self.reaching, first, level, grid);
+        let slot = self.slots.get(self.slot_of[number] as usize);
+        if slot.is_none_or(|slot| slot.number != number) {
+            self.add(number, |edges| cross(first, edges));
         }
+        let edges = self.slots[self.slot_of[number] as usize].edges(row);
         self.parts.clear();
-        self.coverage.clear(&faces.regions);
+        self.coverage.clear(&faces.kinds);
         let (mut from, end) = columns;
-        for edge in self.slots[slot].edges.sorted(row) {
+        for edge in self.edges.sorted_among(row, edges) {
             let to = edge.column().min(end);
             if from < to {
-                self.coverage.look(&faces.regions);
                 let (_, shown) = front_face(&faces.front_faces, &self.coverage);
-                self.parts.push(((from, to), shown));
+                match self.parts.last_mut() {
+                    Some((last, same)) if *same == shown => last.1 = to,
+                    _ => self.parts.push(((from, to), shown)),
+                }
                 from = to;
             }
+            if from == end {
+                break;
+            }
+            let edge = edge.edge();
             self.coverage
-                .cross(edge.edge().region(), edge.edge().cover());
+                .cross(&faces.kinds, edge.region(), edge.cover());
         }
         if from < end {
-            self.coverage.look(&faces.regions);
             let (_, shown) = front_face(&faces.front_faces, &self.coverage);
             self.parts.push(((from, end), shown));
         }
         self.parts.drain(..)
+    }
+
+    /// Adds the edges of the late faces of this number.
+    fn add(&mut self, number: usize, cross: impl FnOnce(&mut RowEdges)) {
+        if self.edges.counts().iter().sum::<usize>() >= self.enough {
+            self.forget();
+        }
+        let begin = self.edges.counts();
+        cross(&mut self.edges);
+        self.slot_of[number] = self.slots.len() as u32;
+        self.slots.push(Slot {
+            number,
+            begin,
+            end: self.edges.counts(),
+        });
+    }
+
+    /// Forgets all edges.
+    fn forget(&mut self) {
+        self.slots.clear();
+        self.edges.clear();
     }
 }

@@ -30,7 +30,7 @@ impl LowEdges {
     /// Prepares for rows of a frame.
     pub(crate) fn begin(&mut self, table: &EdgeTable<'_>) {
         self.first = None;
-        self.coverage.clear(&table.regions);
+        self.coverage.clear(&table.regions.kinds);
     }
 
     /// Goes to a row. Returns whether any low region reaches it.
@@ -75,7 +75,7 @@ impl LowEdges {
                     let visible = if covering == 0 {
                         alone
                     } else {
-                        self.coverage.look(&table.regions);
+                        self.coverage.look(&table.regions.kinds);
                         Packed::new(resolve(&self.coverage))
                     };
                     match self.spans.last_mut() {

@@ -1,9 +1,12 @@
 //! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
 //! from one row to the next.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::tracer::scanline::active::Edge;
+use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::table::Regions;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 
@@ -27,6 +30,19 @@ impl EdgeAt {
     }
 }
 
+/// Regions that bands can cross.
+pub(crate) trait BandRegions {
+    /// The columns of the region of this number in the band of rows from `first` on.
+    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns;
+}
+
+impl BandRegions for Regions<'_> {
+    #[inline(always)]
+    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns {
+        self.all[number].cross(simd, first, grid)
+    }
+}
+
 /// The edges of some regions in each row of a band.
 #[derive(Default)]
 pub(crate) struct RowEdges {
@@ -39,29 +55,46 @@ impl RowEdges {
     /// Crosses the regions of these numbers with the band of rows from `first` on.
     pub(crate) fn cross(
         &mut self,
-        regions: &Regions<'_>,
+        regions: &impl BandRegions,
         numbers: &[u32],
         first: u32,
         level: Level,
         grid: Grid,
     ) {
+        self.clear();
+        self.add(regions, numbers, first, level, grid);
+    }
+
+    /// Removes all edges.
+    pub(crate) fn clear(&mut self) {
         self.rows.iter_mut().for_each(Vec::clear);
         self.reached = 0;
-        dispatch!(level, simd => self.cross_all(simd, regions, numbers, first, grid));
+    }
+
+    /// Adds the edges of the regions of these numbers in the band of rows from `first` on.
+    pub(crate) fn add(
+        &mut self,
+        regions: &impl BandRegions,
+        numbers: &[u32],
+        first: u32,
+        level: Level,
+        grid: Grid,
+    ) {
+        dispatch!(level, simd => self.add_all(simd, regions, numbers, first, grid));
     }
 
     #[inline(always)]
-    fn cross_all<S: Simd>(
+    fn add_all<S: Simd>(
         &mut self,
         simd: S,
-        regions: &Regions<'_>,
+        regions: &impl BandRegions,
         numbers: &[u32],
         first: u32,
         grid: Grid,
     ) {
         for &region in numbers {
             let region = region as usize;
-            let band = regions.all[region].cross(simd, first, grid);
+            let band = regions.cross(simd, region, first, grid);
             let ([a, d], [b, c]) = (band.possible, band.certain);
             let mut filled = band.filled;
             self.reached |= filled;
@@ -87,9 +120,19 @@ impl RowEdges {
         self.rows[row as usize % ROWS].len()
     }
 
+    /// The numbers of edges in each row of the band.
+    pub(crate) fn counts(&self) -> [usize; ROWS] {
+        std::array::from_fn(|row| self.rows[row].len())
+    }
+
     /// The edges in a row of the band, from the left.
     pub(crate) fn sorted(&mut self, row: u32) -> &[EdgeAt] {
-        let edges = &mut self.rows[row as usize % ROWS];
+        self.sorted_among(row, 0..self.count(row))
+    }
+
+    /// The same of those edges that were added as this range of the row's.
+    pub(crate) fn sorted_among(&mut self, row: u32, range: Range<usize>) -> &[EdgeAt] {
+        let edges = &mut self.rows[row as usize % ROWS][range];
         edges.sort_unstable();
         edges
     }

@@ -3,15 +3,20 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
+use std::sync::atomic::Ordering::Relaxed;
+
 use fearless_simd::Level;
 
 use super::grid::Columns;
 use super::prepare::frame::Crowd;
 use super::prepare::solids::Appearance;
+use super::row_edges::EdgeAt;
 use super::visibility::coverage::Coverage;
 use super::visibility::depth_test::DepthTests;
 use super::visibility::visible::{Shown, Visible};
-use super::{DepthTester, Painters, Precision, RowTracer, Scratch, late_faces, visible};
+use super::write::row_writer::RowWriter;
+use super::{DepthTester, Painters, Precision, Progress, RowTracer, Scratch, Tally, visible};
+use crate::random::Random;
 use crate::scene::Scene;
 use crate::stage::Stage;
 use crate::tracer::arena::Arena;
@@ -83,35 +88,88 @@ const SCENES: [&str; 11] = [
     FACES_IN_ONE_PLANE,
 ];
 
-/// Calls `check` with some frames of each of the scenes; the empty one is the built-in.
+/// Every frame is one of a crowd.
+pub(super) const CROWDED: Crowd = Crowd {
+    cull_from: 0,
+    low_from: f64::NEG_INFINITY,
+    late_from: 0,
+    late_bytes: usize::MAX,
+    late_edges: usize::MAX,
+};
+
+/// The same, without memory for late faces.
+pub(super) const CROWDED_WITHOUT_MEMORY: Crowd = Crowd {
+    late_bytes: 0,
+    late_edges: 0,
+    ..CROWDED
+};
+
+/// No frame is one of a crowd.
+const NOT_CROWDED: Crowd = Crowd {
+    cull_from: u64::MAX,
+    low_from: f64::INFINITY,
+    late_from: u64::MAX,
+    late_bytes: 0,
+    late_edges: 0,
+};
+
+/// Calls `check` with the tracer of a frame of this scene; the empty one is the built-in.
+pub(super) fn with_tracer<T>(
+    text: &str,
+    (stage, alpha, size): (Stage, f64, u32),
+    crowd: Crowd,
+    check: impl FnOnce(&RowTracer<'_>) -> T,
+) -> T {
+    let scene = match text {
+        "" => Scene::builtin(),
+        text => Scene::from_toml(text).unwrap(),
+    };
+    let arena = Arena::default();
+    let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
+    let (precision, level) = (Precision::Certified, Level::baseline());
+    let tracer = RowTracer::with_crowd(crowd, &ladder, precision, level, &arena);
+    check(&tracer)
+}
+
+/// Calls `check` with some frames of each of the scenes.
 pub(super) fn each_frame(size: u32, mut check: impl FnMut(&str, &RowTracer<'_>)) {
     for text in SCENES {
-        let scene = match text {
-            "" => Scene::builtin(),
-            text => Scene::from_toml(text).unwrap(),
-        };
         for (stage, alpha) in [
             (Stage::Shadow, 0.0),
             (Stage::Reflection, 0.0),
             (Stage::Reflection, 0.3),
             (Stage::Reflection, 2.1),
         ] {
-            let arena = Arena::default();
-            let ladder = Ladder::new(&scene, stage, alpha, size, Rung::Hardware, &arena);
             let name = text.lines().next().unwrap_or("built-in");
-            // Every frame is one of a crowd, or none.
-            for (from, low_from) in [(0, f64::NEG_INFINITY), (u64::MAX, f64::INFINITY)] {
-                let crowd = Crowd {
-                    cull_from: from,
-                    low_from,
-                    late_from: from,
-                };
-                let (precision, level) = (Precision::Certified, Level::baseline());
-                let tracer = RowTracer::with_crowd(crowd, &ladder, precision, level, &arena);
-                check(&format!("{name}, stage {stage}, α = {alpha}"), &tracer);
+            for crowd in [CROWDED, CROWDED_WITHOUT_MEMORY, NOT_CROWDED] {
+                with_tracer(text, (stage, alpha, size), crowd, |tracer| {
+                    check(&format!("{name}, stage {stage}, α = {alpha}"), tracer);
+                });
             }
         }
     }
+}
+
+/// A scene of long and thin tetrahedra that cast shadows on one another. At α = 0 many edges pass
+/// through the centres of pixels.
+pub(super) fn slivers(count: usize) -> String {
+    let mut random = Random::new();
+    let mut number = |most: i64| random.below(2 * most as usize + 1) as i64 - most;
+    let mut scene = String::new();
+    for _ in 0..count {
+        let mut point = |most: i64| [(); 3].map(|()| number(most));
+        let beside = |[x, y, z]: [i64; 3], to: [i64; 3]| [x + to[0], y + to[1], z + to[2]];
+        let (a, b) = (point(24), point(24));
+        let (c, d) = (beside(a, point(1)), beside(b, point(1)));
+        let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|axis| p[axis] - a[axis]));
+        let cross = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
+        if cross(1, 2) * w[0] + cross(2, 0) * w[1] + cross(0, 1) * w[2] != 0 {
+            let vertices = [a, b, c, d].map(|p| p.map(|x| x as f64 / 64.0));
+            scene +=
+                &format!("[[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n");
+        }
+    }
+    scene
 }
 
 /// The spans of a row, from the left: where each ends, and what is visible there.
@@ -208,10 +266,14 @@ fn claims(
                 _ => None,
             };
             let late = late.unwrap();
-            let color = |decision| tracer.pixels.color(decision);
-            let faces = late_faces(late, &tracer.late, mirrored, &color, &mut painters.spare);
-            let (numbered, splitter) = ((late.number, faces), &mut painters.face_splitter);
-            let parts = splitter.split(numbered, row, columns, tracer.level, frame.grid);
+            let Painters {
+                face_splitter,
+                spare,
+                ..
+            } = painters;
+            let faces = late.get(&tracer.late, spare);
+            let cross = |first, edges: &mut _| late.cross(faces, first, edges, &tracer.late, spare);
+            let parts = face_splitter.split((late.number, faces), row, columns, cross);
             let claims = parts.map(|(columns, shown)| match shown {
                 Shown::Paint(paint) => (columns, Claim::Shows(faces.paints[paint].decision)),
                 _ => (columns, Claim::None),
@@ -292,5 +354,88 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
         }
         // Spans that leave much in doubt would pass, too.
         assert!(certain > 100 * in_doubt, "{name}: {certain}, {in_doubt}");
+    });
+}
+
+#[test]
+fn late_faces_take_no_more_memory_than_they_may() {
+    let mut random = Random::new();
+    let mut spheres = String::new();
+    for _ in 0..2400 {
+        let center = [(); 3].map(|()| random.fraction() - 0.5);
+        spheres += &format!(
+            "[[sphere]]\ncenter = {center:?}\nradius = 0.03125\ncolor = [0.5, 0.5, 0.5]\n"
+        );
+    }
+    let (tetrahedra, mixed) = (slivers(400), slivers(100) + &spheres);
+    let size = 128;
+    let bytes = |text: &str, late_bytes, late_edges| {
+        let crowd = Crowd {
+            late_bytes,
+            late_edges,
+            ..CROWDED
+        };
+        with_tracer(text, (Stage::Reflection, 0.3, size), crowd, |tracer| {
+            let mut samples = vec![0.0; 3 * (size * size) as usize];
+            let measured = allocation_counter::measure(|| {
+                let mut scratch = Scratch::default();
+                tracer.begin(&mut scratch);
+                let progress = Progress::default();
+                tracer.trace(0..size, &mut samples, None, None, &mut scratch, &progress);
+            });
+            measured.bytes_max
+        })
+    };
+    let of_regions = |text, most| {
+        let bytes = [0, most, usize::MAX].map(|most| bytes(text, most, 0));
+        (most, bytes)
+    };
+    let edges = 1 << 12;
+    let in_edges = |bytes: usize| bytes / size_of::<EdgeAt>();
+    let of_edges = [0, edges, usize::MAX].map(|most| bytes(&tetrahedra, 0, in_edges(most)));
+    let of_edges = (edges, of_edges);
+    for (most, [none, some, all]) in [
+        of_regions(&tetrahedra, 1 << 16),
+        of_regions(&mixed, 1 << 15),
+        of_edges,
+    ] {
+        // Memory that grows is more than what lies in it, and one solid may go beyond the most.
+        let most = 5 * most as u64;
+        let taken = format!("{none}, then {some}, then {all} bytes");
+        assert!(some < none + most && none + 2 * most < all, "{taken}");
+    }
+}
+
+#[test]
+fn a_row_makes_no_late_faces_once_its_frame_is_cancelled() {
+    let (text, size) = (slivers(60), 64);
+    let frame = (Stage::Reflection, 0.3, size);
+    with_tracer(&text, frame, CROWDED, |tracer| {
+        let taken = |progress: &Progress| {
+            let mut scratch = Scratch::default();
+            tracer.begin(&mut scratch);
+            let row = size / 2;
+            let mut writer = RowWriter {
+                level: tracer.level,
+                precision: tracer.precision,
+                grid: tracer.frame.grid,
+                first: row,
+                row,
+                y: tracer.frame.grid.coordinate(row),
+                samples: &mut vec![0.0; 3 * size as usize],
+                decisions: None,
+                history: None,
+                pending: None,
+                tally: Tally::default(),
+                progress,
+            };
+            tracer.trace_row(&mut writer, &mut scratch);
+            tracer.late.taken.load(Relaxed)
+        };
+        let progress = Progress::default();
+        progress.cancel();
+        assert_eq!(taken(&progress), 0);
+        progress.begin();
+        assert_ne!(taken(&progress), 0);
     });
 }

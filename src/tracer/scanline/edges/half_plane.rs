@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x4};
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, FourBounded, Real, Ring};
 use crate::tracer::half_space::HalfSpace;
-use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
+use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::vector::Vector;
@@ -41,11 +41,33 @@ enum Border {
 
 /// Where the border crosses a row, in columns: at + per_y · Y.
 #[derive(Clone, Copy)]
-struct Root {
-    at: f64,
-    per_y: f64,
+pub(super) struct Root {
+    pub(super) at: f64,
+    pub(super) per_y: f64,
     /// A bound on the error in columns.
-    slack: f64,
+    pub(super) slack: f64,
+}
+
+impl Root {
+    /// Intersects enclosures of as many rows as there are lanes with what lies to the right of the
+    /// root, or to the left.
+    #[inline(always)]
+    pub(super) fn cut<S: Simd>(
+        &self,
+        rightward: bool,
+        y: S::f64s,
+        enclosure: &mut ColumnEnclosure<S::f64s>,
+    ) {
+        let ColumnEnclosure { possible, certain } = enclosure;
+        let root_column = y * self.per_y + self.at;
+        if rightward {
+            possible[0] = possible[0].max(root_column - self.slack);
+            certain[0] = certain[0].max(root_column + self.slack);
+        } else {
+            possible[1] = possible[1].min(root_column + self.slack);
+            certain[1] = certain[1].min(root_column - self.slack);
+        }
+    }
 }
 
 impl HalfPlane {
@@ -224,10 +246,8 @@ impl HalfPlane {
 
     /// The same, with the sum computed only near the border.
     pub(crate) fn decide_near(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let (root, rightward) = match &self.border {
-            Border::Left(root) => (root, true),
-            Border::Right(root) => (root, false),
-            Border::Horizontal { .. } => return self.decide(x, y),
+        let Some((root, rightward)) = self.root() else {
+            return self.decide(x, y);
         };
         let beyond = number_at(x, grid.half) - (y * root.per_y + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
@@ -237,27 +257,41 @@ impl HalfPlane {
         }
     }
 
-    /// Intersects enclosures of as many rows as there are lanes with the half-plane.
-    #[inline(always)]
-    pub(crate) fn cut<S: Simd>(
-        &self,
-        simd: S,
-        y: S::f64s,
-        enclosure: &mut ColumnEnclosure<S::f64s>,
-    ) {
-        let ColumnEnclosure { possible, certain } = enclosure;
+    /// The border's root, if the border is not level, and whether the half-plane lies to the right
+    /// of it.
+    #[inline]
+    pub(super) fn root(&self) -> Option<(&Root, bool)> {
         match &self.border {
-            Border::Left(root) => {
-                let root_column = y * root.per_y + root.at;
-                possible[0] = possible[0].max(root_column - root.slack);
-                certain[0] = certain[0].max(root_column + root.slack);
-            }
-            Border::Right(root) => {
-                let root_column = y * root.per_y + root.at;
-                possible[1] = possible[1].min(root_column + root.slack);
-                certain[1] = certain[1].min(root_column - root.slack);
-            }
+            Border::Left(root) => Some((root, true)),
+            Border::Right(root) => Some((root, false)),
+            Border::Horizontal { .. } => None,
+        }
+    }
+
+    /// Intersects enclosures of the row at Y with the half-plane.
+    #[cfg(test)]
+    #[inline(always)]
+    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut ColumnEnclosure<f64>) {
+        let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
+        let mut lanes = ColumnEnclosure {
+            possible: all(enclosure.possible),
+            certain: all(enclosure.certain),
+        };
+        self.cut(simd, S::f64s::splat(simd, y), &mut lanes);
+        let first = |ends: [S::f64s; 2]| ends.map(|end| end.as_slice()[0]);
+        enclosure.possible = first(lanes.possible);
+        enclosure.certain = first(lanes.certain);
+    }
+}
+
+impl Cut for HalfPlane {
+    #[inline(always)]
+    fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
+        match &self.border {
+            Border::Left(root) => root.cut::<S>(true, y, enclosure),
+            Border::Right(root) => root.cut::<S>(false, y, enclosure),
             Border::Horizontal { error } => {
+                let ColumnEnclosure { possible, certain } = enclosure;
                 let sum = y * self.per_y.value() + self.constant.value();
                 let is_in = sum.simd_gt(*error);
                 if !is_in.all_true() {
@@ -280,21 +314,6 @@ impl HalfPlane {
                 }
             }
         }
-    }
-
-    /// The same for the row at Y.
-    #[cfg(test)]
-    #[inline(always)]
-    pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut ColumnEnclosure<f64>) {
-        let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
-        let mut lanes = ColumnEnclosure {
-            possible: all(enclosure.possible),
-            certain: all(enclosure.certain),
-        };
-        self.cut(simd, S::f64s::splat(simd, y), &mut lanes);
-        let first = |ends: [S::f64s; 2]| ends.map(|end| end.as_slice()[0]);
-        enclosure.possible = first(lanes.possible);
-        enclosure.certain = first(lanes.certain);
     }
 }
 

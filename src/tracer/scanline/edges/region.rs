@@ -11,13 +11,15 @@
 //! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
 //! the bound need no test. The columns within it, rarely one, are tested one by one.
 
+use bumpalo::Bump;
 use bumpalo_herd::Member;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
 use crate::tracer::scanline::edges::band_columns::BandColumns;
+use crate::tracer::scanline::edges::coarse::CoarseHalfPlane;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
-use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
+use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::{Grid, ROWS, offsets};
 
@@ -56,6 +58,22 @@ impl<'f> Region<'f> {
         }
     }
 
+    /// Coarse copies of its half-planes without those that it is clipped to; `None` where there is
+    /// none of one of them, or of the ellipse.
+    pub(crate) fn coarse<'a>(&self, arena: &'a Bump, grid: Grid) -> Option<&'a [CoarseHalfPlane]> {
+        if self.ellipse.is_some() {
+            return None;
+        }
+        let coarse = |half_plane| CoarseHalfPlane::new(half_plane, grid).ok_or(());
+        let all = arena.alloc_slice_try_fill_iter(self.half_planes.iter().map(coarse));
+        all.ok().map(|all| &*all)
+    }
+
+    /// How many bytes [`Region::kept_in`] takes.
+    pub(crate) fn kept_size(&self) -> usize {
+        size_of_val(self.half_planes) + self.ellipse.map_or(0, size_of_val) + size_of_val(self)
+    }
+
     /// The half-planes that the region is an intersection of, besides its ellipse.
     pub(crate) fn half_planes(&self) -> &'f [HalfPlane] {
         self.half_planes
@@ -82,6 +100,29 @@ impl<'f> Region<'f> {
         self.rows
     }
 
+    /// Those of these rows in which its sides leave any columns.
+    pub(crate) fn rows_between_sides(&self, grid: Grid) -> (u32, u32) {
+        let roots = || self.half_planes.iter().chain(self.clip);
+        let roots = || roots().filter_map(HalfPlane::root);
+        let (mut low, mut high) = (-grid.max, grid.max);
+        for (left, _) in roots().filter(|(_, rightward)| *rightward) {
+            for (right, _) in roots().filter(|(_, rightward)| !rightward) {
+                // The right root lies at most so far to the right of the left one: `apart` +
+                // `per_y` · Y. The slack of a root is more than rounding its terms again, so it is
+                // taken twice.
+                let apart = right.at - left.at + 2.0 * (left.slack + right.slack);
+                let per_y = right.per_y - left.per_y;
+                if per_y > 0.0 {
+                    low = low.max(-apart / per_y);
+                } else if per_y < 0.0 {
+                    high = high.min(-apart / per_y);
+                }
+            }
+        }
+        let (from, to) = grid.between(low, high);
+        (self.rows.0.max(from), self.rows.1.min(to))
+    }
+
     /// Whether there are none.
     pub(crate) fn is_nowhere(&self) -> bool {
         self.rows.0 >= self.rows.1
@@ -104,39 +145,8 @@ impl<'f> Region<'f> {
     /// The same as far as bounds on roots tell.
     #[inline(always)]
     fn enclose<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
-        let mut band = BandColumns::NONE;
-        for first in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = offsets::<S>(simd, first) + grid.coordinate(row);
-            let mut enclosure = match &self.ellipse {
-                Some(ellipse) => ellipse.enclose(simd, y, grid),
-                None => {
-                    let zero = S::f64s::splat(simd, 0.0);
-                    let all = [zero, zero + f64::from(grid.size)];
-                    ColumnEnclosure {
-                        possible: all,
-                        certain: all,
-                    }
-                }
-            };
-            for half_planes in [self.half_planes, self.clip] {
-                for half_plane in half_planes {
-                    half_plane.cut(simd, y, &mut enclosure);
-                }
-            }
-            let is_crossed =
-                y.simd_ge(grid.coordinate(self.rows.0)) & y.simd_lt(grid.coordinate(self.rows.1));
-            let ColumnEnclosure { possible, certain } = enclosure;
-            let possible = [
-                grid.ceil_all::<S>(possible[0]),
-                grid.count_all::<S>(possible[1]),
-            ];
-            let certain = [
-                grid.ceil_all::<S>(certain[0]),
-                grid.count_all::<S>(certain[1]),
-            ];
-            band.store(simd, first, is_crossed, possible, certain);
-        }
-        band
+        let half_planes = (self.half_planes, self.clip);
+        enclose(simd, self.ellipse, half_planes, self.rows, row, grid)
     }
 
     /// Decides the columns in doubt one by one, from the outside in.
@@ -210,6 +220,52 @@ impl<'f> Region<'f> {
     }
 }
 
+/// The columns of an intersection in the band of rows from `row` on, as far as bounds on roots
+/// tell. Only `rows` matter.
+#[inline(always)]
+pub(crate) fn enclose<S: Simd>(
+    simd: S,
+    ellipse: Option<&Ellipse>,
+    (half_planes, clip): (&[impl Cut], &[HalfPlane]),
+    rows: (u32, u32),
+    row: u32,
+    grid: Grid,
+) -> BandColumns {
+    let mut band = BandColumns::NONE;
+    for first in (0..ROWS).step_by(S::f64s::LEN) {
+        let y = offsets::<S>(simd, first) + grid.coordinate(row);
+        let mut enclosure = match ellipse {
+            Some(ellipse) => ellipse.enclose(simd, y, grid),
+            None => {
+                let zero = S::f64s::splat(simd, 0.0);
+                let all = [zero, zero + f64::from(grid.size)];
+                ColumnEnclosure {
+                    possible: all,
+                    certain: all,
+                }
+            }
+        };
+        for half_plane in half_planes {
+            half_plane.cut(simd, y, &mut enclosure);
+        }
+        for half_plane in clip {
+            half_plane.cut(simd, y, &mut enclosure);
+        }
+        let is_crossed = y.simd_ge(grid.coordinate(rows.0)) & y.simd_lt(grid.coordinate(rows.1));
+        let ColumnEnclosure { possible, certain } = enclosure;
+        let possible = [
+            grid.ceil_all::<S>(possible[0]),
+            grid.count_all::<S>(possible[1]),
+        ];
+        let certain = [
+            grid.ceil_all::<S>(certain[0]),
+            grid.count_all::<S>(certain[1]),
+        ];
+        band.store(simd, first, is_crossed, possible, certain);
+    }
+    band
+}
+
 #[cfg(test)]
 mod tests {
     use fearless_simd::{Level, dispatch};
@@ -271,14 +327,19 @@ mod tests {
                 Ellipse::outline(Vector::new(x, y, z), radius, grid)
             });
             let region = Region::new(&half_planes, ellipse.as_ref(), grid);
+            let arena = Bump::new();
+            let coarse = region.coarse(&arena, grid);
             for first in (0..SIZE).step_by(ROWS) {
-                let mut band =
-                    dispatch!(Level::baseline(), simd => region.enclose(simd, first, grid));
-                // Before and after the columns in doubt are decided.
-                for narrowed in [false, true] {
-                    if narrowed {
-                        region.narrow(&mut band, first, grid);
-                    }
+                let level = Level::baseline();
+                let enclosed = || dispatch!(level, simd => region.enclose(simd, first, grid));
+                let coarse = coarse.map(|all| {
+                    let rows = (0, SIZE);
+                    dispatch!(level, simd => enclose(simd, None, (all, &[]), rows, first, grid))
+                });
+                let mut narrowed = enclosed();
+                region.narrow(&mut narrowed, first, grid);
+                for band in [Some(enclosed()), Some(narrowed), coarse] {
+                    let Some(band) = band else { continue };
                     for row in 0..ROWS {
                         let within = |ends: &[[u32; ROWS]; 2], column: u32| {
                             ends[0][row] <= column && column < ends[1][row]

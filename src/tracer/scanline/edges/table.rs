@@ -45,8 +45,13 @@ pub(crate) struct EdgeTableBuilder<'f> {
 pub(crate) struct Regions<'f> {
     /// By their numbers.
     pub(crate) all: &'f [Region<'f>],
+    pub(crate) kinds: RegionKinds<'f>,
+}
+
+/// What each of some regions is.
+pub(crate) struct RegionKinds<'f> {
     /// By the number of the region.
-    pub(crate) kinds: &'f [RegionKind],
+    pub(crate) all: &'f [RegionKind],
     /// How many receivers of shadows there are.
     pub(crate) receivers: usize,
 }
@@ -142,8 +147,10 @@ impl<'f> EdgeTableBuilder<'f> {
     pub(crate) fn regions(self) -> Regions<'f> {
         Regions {
             all: self.regions.into_bump_slice(),
-            kinds: self.kinds.into_bump_slice(),
-            receivers: self.receivers as usize,
+            kinds: RegionKinds {
+                all: self.kinds.into_bump_slice(),
+                receivers: self.receivers as usize,
+            },
         }
     }
 

@@ -2,7 +2,6 @@
 
 use std::cell::OnceCell;
 
-use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
 
 use crate::number::Bounded;
@@ -14,13 +13,13 @@ use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::edges::table::{RegionKind, Regions, SolidIndex};
+use crate::tracer::scanline::edges::table::{RegionKind, SolidIndex};
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::face_plane;
 use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces, Pair};
-use crate::tracer::scanline::prepare::late_faces::{LateFaces, LateSource, SplitFaces};
+use crate::tracer::scanline::prepare::late_faces::LateFaces;
 use crate::tracer::scanline::prepare::outline::{Outlined, OutlinedFaces, Outlines};
-use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on};
+use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on_face};
 use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
@@ -55,7 +54,12 @@ pub(crate) fn prepare_solids<'f>(
             Solid::Tetrahedron(t) if is_late => {
                 parts.late_faces += 1;
                 let number = parts.late_faces - 1;
-                Appearance::LateFaces(arena.alloc(LateFaces::new(number, solid.faces(), t)))
+                Appearance::LateFaces(arena.alloc(LateFaces::new(
+                    number,
+                    mirrored,
+                    solid.faces(),
+                    t,
+                )))
             }
             _ => appearances.of(&solid, colors[index.0 as usize], parts),
         };
@@ -78,41 +82,8 @@ pub(crate) fn prepare_solids<'f>(
     }
 }
 
-/// The front faces of `late`, in the view in the mirror or in the direct one. The first call makes
-/// them. `color` tells the colour of a decision; `spare` is memory for the work, free afterwards.
-pub(crate) fn late_faces<'l, 'f>(
-    late: &'l LateFaces<'f>,
-    source: &LateSource<'f>,
-    mirrored: bool,
-    color: &dyn Fn(Decision) -> [f32; 3],
-    spare: &mut Bump,
-) -> &'l SplitFaces<'f> {
-    late.made.get_or_init(|| {
-        spare.reset();
-        let view = source.picture.view(mirrored);
-        let appearances = Appearances::new(source.picture, view, mirrored);
-        let mut parts = Builder::new((source.grid, source.level), color, u64::MAX, 0, spare);
-        let faces = appearances.front_faces(&late.outlined, late.tetrahedron, &mut parts);
-        let memory = source.threads.get();
-        let regions = parts.edge_table.regions();
-        let kept = |number: usize| regions.all[number].kept_in(&memory, late.outlined.outline);
-        SplitFaces {
-            front_faces: FrontFaces {
-                all: memory.alloc_slice_copy(faces.all),
-                pairs: memory.alloc_slice_copy(faces.pairs),
-            },
-            regions: Regions {
-                all: memory.alloc_slice_fill_with(regions.all.len(), kept),
-                kinds: memory.alloc_slice_copy(regions.kinds),
-                receivers: regions.receivers,
-            },
-            paints: parts.paints.all().kept_in(&memory),
-        }
-    })
-}
-
 /// Makes the appearances of a view's solids.
-struct Appearances<'p, 's, 'f> {
+pub(super) struct Appearances<'p, 's, 'f> {
     picture: &'p Picture<'s, Bounded>,
     view: &'p View<'s, Bounded>,
     mirrored: bool,
@@ -124,7 +95,11 @@ struct Appearances<'p, 's, 'f> {
 }
 
 impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
-    fn new(picture: &'p Picture<'s, Bounded>, view: &'p View<'s, Bounded>, mirrored: bool) -> Self {
+    pub(super) fn new(
+        picture: &'p Picture<'s, Bounded>,
+        view: &'p View<'s, Bounded>,
+        mirrored: bool,
+    ) -> Self {
         Appearances {
             picture,
             view,
@@ -225,7 +200,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
     }
 
     /// The front faces of a tetrahedron, whose regions and paints are added.
-    fn front_faces(
+    pub(super) fn front_faces(
         &self,
         solid: &OutlinedFaces<'f>,
         t: &TetrahedronInView<Bounded>,
@@ -287,13 +262,8 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         let casters = casters.on(solid.number, Some(face)).iter().copied();
         let behind = t.solid.inner_half_space(face);
         let plane = &face_plane(&behind, grid);
-        // Rays to the light leave the face.
-        let is_ahead = |caster: usize| match self.view.solid(caster) {
-            Solid::Sphere(_) => false,
-            Solid::Tetrahedron(t) => behind.misses(t.solid.vertices(), parts.level),
-        };
         let screen = (grid, parts.level);
-        let solids = shadows_on(plane, self.view, casters, is_ahead, screen, arena);
+        let solids = shadows_on_face((&behind, plane), self.view, casters, screen, arena);
         let surface = self.surface.on_plane(solid.number, plane, grid, arena);
         // Most shadows on the front face's plane fall beside the solid.
         let clipped = |shadow: Region<'f>| shadow.clipped(solid.outline);

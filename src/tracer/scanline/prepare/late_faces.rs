@@ -4,18 +4,28 @@
 //! Each face receives the shadows of many solids, and few of a crowd's solids are seen. So the
 //! creases and shadows of a solid are no edges of the frame: they are made for the rows that show
 //! the solid, and divide what they show of it.
+//!
+//! A crowd can have millions of such shadows. So most are kept coarsely, and made again in the few
+//! bands in which that leaves a doubt; and where the memory for that is used up, they are made
+//! again in each band that they reach.
 
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicUsize;
 
 use bumpalo_herd::Herd;
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd};
 
 use crate::number::Bounded;
-use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::table::Regions;
+use crate::tracer::ladder::RowPixels;
+use crate::tracer::scanline::edges::band_columns::BandColumns;
+use crate::tracer::scanline::edges::coarse::CoarseHalfPlane;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::region::{Region, enclose};
+use crate::tracer::scanline::edges::table::RegionKinds;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
+use crate::tracer::scanline::row_edges::BandRegions;
 use crate::tracer::scanline::write::paint::AllPaints;
 use crate::tracer::view_tetrahedra::TetrahedronInView;
 
@@ -23,45 +33,106 @@ use crate::tracer::view_tetrahedra::TetrahedronInView;
 pub(crate) struct LateFaces<'f> {
     /// The number among all late faces of the frame.
     pub(crate) number: usize,
+    /// Whether the solid is seen in the mirror.
+    pub(super) mirrored: bool,
     /// What they are made from.
-    pub(crate) outlined: OutlinedFaces<'f>,
-    pub(crate) tetrahedron: &'f TetrahedronInView<Bounded>,
+    pub(super) outlined: OutlinedFaces<'f>,
+    pub(super) tetrahedron: &'f TetrahedronInView<Bounded>,
     /// They themselves, once they are made.
-    pub(crate) made: OnceLock<SplitFaces<'f>>,
+    pub(super) made: OnceLock<SplitFaces<'f>>,
 }
 
 /// Front faces with regions and paints of their own.
 pub(crate) struct SplitFaces<'f> {
     /// The faces; receivers, creases and paints are numbers among those of this solid.
     pub(crate) front_faces: FrontFaces<'f>,
-    /// The creases, and the shadows on the faces.
-    pub(crate) regions: Regions<'f>,
+    /// What the regions are: the creases, and the shadows on the faces.
+    pub(crate) kinds: RegionKinds<'f>,
     /// The paints of the faces.
     pub(crate) paints: AllPaints<'f>,
+    /// The regions, unless there was no memory for them.
+    pub(super) regions: Option<&'f [KeptRegion<'f>]>,
+}
+
+/// A region of late faces, as it is kept.
+pub(super) enum KeptRegion<'f> {
+    Whole(&'f Region<'f>),
+    /// The shadow of a tetrahedron, clipped to the outline of the solid.
+    Shadow {
+        /// If there was memory for them.
+        half_planes: Option<&'f [CoarseHalfPlane]>,
+        cast: Cast,
+        /// The rows in which the shadow may have pixels.
+        rows: (u16, u16),
+    },
+}
+
+/// Which shadow of a tetrahedron it is.
+#[derive(Clone, Copy)]
+pub(super) struct Cast {
+    /// The number of the face that it falls on.
+    pub(super) face: u8,
+    /// The number of the tetrahedron in the scene.
+    pub(super) caster: u16,
 }
 
 /// What late faces are made from.
 pub(crate) struct LateSource<'f> {
-    /// The frame as f64 with a bound knows it.
-    pub(crate) picture: &'f Picture<'f, Bounded>,
+    pub(crate) pixels: &'f dyn RowPixels,
     pub(crate) grid: Grid,
     pub(crate) level: Level,
     /// The memory for what threads make.
     pub(crate) threads: &'f Herd,
+    /// How many bytes of it regions may take; each thread may go beyond this with one solid.
+    pub(crate) most: usize,
+    /// How many they take.
+    pub(crate) taken: AtomicUsize,
 }
 
 impl<'f> LateFaces<'f> {
     /// Nothing is made yet.
     pub(crate) fn new(
         number: usize,
+        mirrored: bool,
         outlined: OutlinedFaces<'f>,
         tetrahedron: &'f TetrahedronInView<Bounded>,
     ) -> Self {
         LateFaces {
             number,
+            mirrored,
             outlined,
             tetrahedron,
             made: OnceLock::new(),
+        }
+    }
+}
+
+/// The kept regions of late faces, to be crossed.
+pub(super) struct KeptRegions<'a, 'f> {
+    pub(super) all: &'a [KeptRegion<'f>],
+    /// The half-planes of the solid's outline, and its rows.
+    pub(super) outline: (&'f [HalfPlane], (u32, u32)),
+    /// The columns of a shadow in the band, made again.
+    pub(super) again: &'a dyn Fn(Cast) -> BandColumns,
+}
+
+impl BandRegions for KeptRegions<'_, '_> {
+    #[inline(always)]
+    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns {
+        match &self.all[number] {
+            KeptRegion::Whole(region) => region.cross(simd, first, grid),
+            KeptRegion::Shadow {
+                half_planes, cast, ..
+            } => {
+                let (outline, rows) = self.outline;
+                let coarse = half_planes.map(|half_planes| {
+                    enclose(simd, None, (half_planes, outline), rows, first, grid)
+                });
+                match coarse {
+                    Some(band) if band.is_certain => band,
+                    _ => (self.again)(*cast),
+                }
+            }
         }
     }
 }

@@ -140,6 +140,23 @@ pub(crate) fn shadows_on<'f>(
     casters.map(shape)
 }
 
+/// The shadows of `casters` on the plane of a face, which is the border of the half-space `behind`
+/// it, as [`shadows_on`] has them.
+pub(crate) fn shadows_on_face<'f>(
+    (behind, plane): (&HalfSpace<Bounded>, &PixelPlane),
+    view: &View<'_, Bounded>,
+    casters: impl Iterator<Item = u16>,
+    (grid, level): (Grid, Level),
+    arena: &'f Bump,
+) -> impl Iterator<Item = Region<'f>> {
+    // Rays to the light leave the face.
+    let is_ahead = move |caster: usize| match view.solid(caster) {
+        Solid::Sphere(_) => false,
+        Solid::Tetrahedron(t) => behind.misses(t.solid.vertices(), level),
+    };
+    shadows_on(plane, view, casters, is_ahead, (grid, level), arena)
+}
+
 /// The casters of a sphere.
 pub(crate) fn casters_on<'f>(
     bounds: &HitBounds,

@@ -4,7 +4,7 @@
 //! the present column. Few columns are looked at: only there their solids and shadows are told
 //! apart.
 
-use crate::tracer::scanline::edges::table::{Receiver, RegionKind, Regions, SolidIndex};
+use crate::tracer::scanline::edges::table::{Receiver, RegionKind, RegionKinds, SolidIndex};
 
 /// How a region covers the present column.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -15,16 +15,36 @@ pub(crate) enum Cover {
     Possibly,
 }
 
+impl Cover {
+    /// Whether the region covers the column; `None` where that is in doubt.
+    pub(super) fn holds(self) -> Option<bool> {
+        match self {
+            Cover::Not => Some(false),
+            Cover::Certainly => Some(true),
+            Cover::Possibly => None,
+        }
+    }
+}
+
+/// What tells which face of a tetrahedron a column sees, and whether the face is in shadow there.
+pub(crate) trait FaceCoverage {
+    /// Whether a receiver is in shadow in the column; `None` where that is in doubt.
+    fn in_shadow(&self, receiver: Receiver) -> Option<bool>;
+
+    /// Whether a region covers the column; `None` where that is in doubt.
+    fn holds(&self, region: usize) -> Option<bool>;
+}
+
 /// How many regions of one kind cover the column.
 #[derive(Clone, Copy, Default)]
-struct CoverCount {
+pub(super) struct CoverCount {
     certain: u32,
     /// How many more may cover it.
     possible: u32,
 }
 
 impl CoverCount {
-    fn add(&mut self, cover: Cover) {
+    pub(super) fn add(&mut self, cover: Cover) {
         match cover {
             Cover::Not => {}
             Cover::Certainly => self.certain += 1,
@@ -32,8 +52,17 @@ impl CoverCount {
         }
     }
 
+    /// Takes back an [`CoverCount::add`] of the same cover.
+    pub(super) fn remove(&mut self, cover: Cover) {
+        match cover {
+            Cover::Not => {}
+            Cover::Certainly => self.certain -= 1,
+            Cover::Possibly => self.possible -= 1,
+        }
+    }
+
     /// Whether any of the regions covers the column; `None` where that is in doubt.
-    fn any(self) -> Option<bool> {
+    pub(super) fn any(self) -> Option<bool> {
         (self.certain > 0 || self.possible == 0).then_some(self.certain > 0)
     }
 }
@@ -83,14 +112,13 @@ pub(crate) struct Coverage {
 }
 
 impl Coverage {
-    /// Goes to the left of these regions.
-    pub(crate) fn clear(&mut self, regions: &Regions<'_>) {
+    /// Goes to the left of regions of these kinds.
+    pub(crate) fn clear(&mut self, kinds: &RegionKinds<'_>) {
         self.covers.clear();
-        self.covers.resize(regions.kinds.len(), Cover::Not);
+        self.covers.resize(kinds.all.len(), Cover::Not);
         self.covering.clear();
         self.shadows.clear();
-        self.shadows
-            .resize(regions.receivers, CoverCount::default());
+        self.shadows.resize(kinds.receivers, CoverCount::default());
         self.receivers.clear();
     }
 
@@ -107,7 +135,7 @@ impl Coverage {
     }
 
     /// Tells solids and shadows of the present column apart.
-    pub(crate) fn look(&mut self, regions: &Regions<'_>) {
+    pub(crate) fn look(&mut self, kinds: &RegionKinds<'_>) {
         self.direct.clear();
         self.mirrored.clear();
         self.surface = CoverCount::default();
@@ -116,7 +144,7 @@ impl Coverage {
         }
         for &region in &self.covering {
             let cover = self.covers[region];
-            match regions.kinds[region] {
+            match kinds.all[region] {
                 RegionKind::Surface => self.surface.add(cover),
                 RegionKind::Shadow(receiver) => {
                     self.shadows[receiver.0 as usize].add(cover);
@@ -135,18 +163,14 @@ impl Coverage {
     pub(crate) fn surface(&self) -> Option<bool> {
         self.surface.any()
     }
+}
 
-    /// Whether a receiver is in shadow in the column.
-    pub(crate) fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
+impl FaceCoverage for Coverage {
+    fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
         self.shadows[number as usize].any()
     }
 
-    /// Whether a region covers the column.
-    pub(crate) fn holds(&self, region: usize) -> Option<bool> {
-        match self.covers[region] {
-            Cover::Not => Some(false),
-            Cover::Certainly => Some(true),
-            Cover::Possibly => None,
-        }
+    fn holds(&self, region: usize) -> Option<bool> {
+        self.covers[region].holds()
     }
 }

@@ -6,6 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use crate::tracer::decision::Decision;
 use crate::tracer::ladder::Pixels;
+use crate::tracer::progress::Progress;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::policy::Precision;
 use crate::tracer::scanline::write::history::RowHistory;
@@ -32,6 +33,8 @@ pub(crate) struct RowWriter<'r> {
     /// show one paint, and lie side by side.
     pub(crate) pending: Option<(Range<usize>, &'r Paint)>,
     pub(crate) tally: Tally,
+    /// Tells whether the rows are still wanted.
+    pub(crate) progress: &'r Progress,
 }
 
 impl<'r> RowWriter<'r> {
