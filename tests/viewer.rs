@@ -20,6 +20,8 @@ mod displays;
 mod fault;
 #[path = "viewer/keys.rs"]
 mod keys;
+#[path = "viewer/mouse.rs"]
+mod mouse;
 #[path = "viewer/overlay.rs"]
 mod overlay;
 #[path = "viewer/pixels.rs"]
@@ -37,6 +39,10 @@ mod session;
 mod shared_image;
 #[path = "viewer/soak.rs"]
 mod soak;
+#[path = "viewer/sway.rs"]
+mod sway;
+#[path = "viewer/wayland.rs"]
+mod wayland;
 #[path = "viewer/window.rs"]
 mod window;
 #[path = "viewer/xvfb.rs"]

@@ -2,39 +2,12 @@
 //! wtype, the display's pixels taken by grim and compared byte for byte with the traced picture.
 //! `.ci/wayland` brings these tools and runs this.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    unreachable_pub,
-    missing_docs,
-    reason = "a test stops at the first surprise"
-)]
-#![allow(dead_code, reason = "the tests on X11 use more of what is shared")]
-#![cfg(target_os = "linux")]
-
-#[path = "viewer/mouse.rs"]
-mod mouse;
-#[path = "viewer/pixels.rs"]
-mod pixels;
-#[path = "viewer/program.rs"]
-mod program;
-#[path = "viewer/sway.rs"]
-mod sway;
-
-use std::time::Duration;
-
 use firsthit::{Kernel, Scene, Stage, Tracer};
-use mouse::Mouse;
-use pixels::{letterboxed, traced, wait_to_show};
-use program::wait_for;
-use sway::{HEIGHT, Sway, WIDTH};
 
-/// How long anything may take that is waited for.
-const DEADLINE: Duration = Duration::from_secs(30);
-
-/// How long something is watched that must stay as it is.
-const WATCH: Duration = Duration::from_secs(2);
+use super::mouse::Mouse;
+use super::pixels::{letterboxed, traced, wait_to_show};
+use super::program::wait_for;
+use super::sway::{HEIGHT, Sway, WIDTH};
 
 #[test]
 #[ignore = "needs sway, wtype and grim"]
