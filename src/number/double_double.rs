@@ -42,11 +42,13 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
+    #[inline]
     fn is_zero(self) -> bool {
         self.high == 0.0 && self.error == 0.0
     }
 
     /// A bound on the magnitude of the truth.
+    #[inline]
     fn magnitude(self) -> f64 {
         (self.high.abs() + self.error) * ROUND_UP
     }
@@ -64,6 +66,7 @@ impl DoubleDouble {
     }
 
     /// The same number without what is unknown about it.
+    #[inline]
     fn middle(self) -> DoubleDouble {
         DoubleDouble { error: 0.0, ..self }
     }

@@ -105,6 +105,7 @@ impl Real for DoubleDouble {
         known
     }
 
+    #[inline]
     fn sign(self) -> Result<Ordering, Doubt> {
         // |low| ≤ u|high|, so the truth has the sign of `high` where |high|(1 − u) exceeds the
         // error.
