@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
+use std::cell::OnceCell;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -152,6 +154,20 @@ impl ColumnCounts {
     }
 }
 
+/// What double-doubles give for a pixel of a sphere.
+struct Truth {
+    normal_light: DoubleDouble,
+    /// n·h, where there is an h.
+    normal_halfway: Option<f64>,
+    /// The values of the forms of the shadow.
+    forms: [DoubleDouble; 4],
+    /// How far the hit is inside of the shadow cylinder.
+    in_cylinder: DoubleDouble,
+    /// The colour, and the highlight's part of it.
+    channels: [DoubleDouble; 3],
+    highlight: [f64; 3],
+}
+
 /// A sphere as rows shade it, and in double-doubles.
 struct Case<'c> {
     picture: &'c Picture<'c, DoubleDouble>,
@@ -199,8 +215,31 @@ impl Case<'_> {
         }
     }
 
+    /// What double-doubles give for a pixel that hits the sphere.
+    fn truth(&self, column: u32, row: u32) -> Truth {
+        let line = self.picture.transform.eye_ray(column, row);
+        let hit = self.sphere.first_hit(&line).unwrap().unwrap();
+        let shading = &self.view.shading;
+        let terms = shading.terms(&hit.normal).unwrap();
+        let (from, l) = (hit.point - self.other, shading.to_light.vector);
+        let moment = from.cross(l);
+        let squared_radius = shading.to_light.squared_length * self.other_radius.squared();
+        let light = shading.ambient() + terms.diffuse + terms.specular;
+        let (color, specular) = (self.color.times(light), self.color.times(terms.specular));
+        Truth {
+            normal_light: terms.normal_light,
+            normal_halfway: terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64()),
+            forms: [moment.x, moment.y, moment.z, -from.dot(l)],
+            in_cylinder: squared_radius - moment.squared_length(),
+            channels: [color.x, color.y, color.z],
+            highlight: [specular.x, specular.y, specular.z].map(Real::to_f64),
+        }
+    }
+
+    /// Checks a row. `truths` keeps what double-doubles give for its pixels, since several vector
+    /// levels are checked.
     #[inline(always)]
-    fn check<S: Simd>(&self, simd: S, row: u32, found: &mut Found) {
+    fn check<S: Simd>(&self, simd: S, row: u32, truths: &[OnceCell<Truth>], found: &mut Found) {
         let constants = &self.constants;
         let y = self.grid.coordinate(row);
         let m = constants.m.at(y);
@@ -228,48 +267,36 @@ impl Case<'_> {
                 let min_squares = constants.min_squares.iter();
                 let zone = min_squares.take_while(|least| squared < **least).count();
                 let samples = zones[zone];
-                let line = self.picture.transform.eye_ray(first + lane as u32, row);
-                let hit = self.sphere.first_hit(&line).unwrap().unwrap();
-                let shading = &self.view.shading;
-                let terms = shading.terms(&hit.normal).unwrap();
+                let column = first + lane as u32;
+                let truth = truths[column as usize].get_or_init(|| self.truth(column, row));
                 let computed = facing.as_slice()[lane];
                 found
                     .light
-                    .note(terms.normal_light, computed, constants.n_dot_l.error);
+                    .note(truth.normal_light, computed, constants.n_dot_l.error);
 
-                let halfway = terms.one_minus_normal_halfway.map(|x| 1.0 - x.to_f64());
-                let facing = terms.normal_light.to_f64();
-                let column = first + lane as u32;
+                let facing = truth.normal_light.to_f64();
                 found.cache.note(
                     &columns,
                     column,
                     facing,
-                    halfway,
+                    truth.normal_halfway,
                     constants.lighting.highlight.threshold,
                 );
 
-                let (from, l) = (hit.point - self.other, shading.to_light.vector);
-                let moment = from.cross(l);
-                let truth = [moment.x, moment.y, moment.z, -from.dot(l)];
-                for (i, truth) in truth.into_iter().enumerate() {
+                for (i, form) in truth.forms.into_iter().enumerate() {
                     let computed = forms[i].as_slice()[lane];
-                    found.forms.note(truth, computed, self.forms[i].error);
+                    found.forms.note(form, computed, self.forms[i].error);
                 }
-                let radius = shading.to_light.squared_length * self.other_radius.squared();
                 let [x, y, z] = [0, 1, 2].map(|i| forms[i].as_slice()[lane]);
                 let cylinder = &self.cylinder;
                 found.cylinders.note(
-                    radius - moment.squared_length(),
+                    truth.in_cylinder,
                     cylinder.squared_radius - (x * x + y * y + z * z),
                     cylinder.error,
                 );
 
-                let light = shading.ambient() + terms.diffuse + terms.specular;
-                let (color, specular) = (self.color.times(light), self.color.times(terms.specular));
-                let truth = [color.x, color.y, color.z];
-                let bright = [specular.x, specular.y, specular.z].map(Real::to_f64);
-                for (i, truth) in truth.into_iter().enumerate() {
-                    let channels = if bright[i] > 1e-3 {
+                for (i, channel) in truth.channels.into_iter().enumerate() {
+                    let channels = if truth.highlight[i] > 1e-3 {
                         &mut found.highlight
                     } else {
                         &mut found.dull
@@ -277,7 +304,7 @@ impl Case<'_> {
                     let sample = 3 * lane + i;
                     let (vector, lane) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
                     channels.note_between(
-                        truth,
+                        channel,
                         samples[vector][0].as_slice()[lane],
                         samples[vector][1].as_slice()[lane],
                     );
@@ -319,9 +346,10 @@ fn check_view(
             other: true_view.spheres[other].center,
         };
         for row in (0..SIZE).step_by(3) {
+            let truths: Vec<_> = (0..SIZE).map(|_| OnceCell::new()).collect();
             // With fused multiply-add, if the processor has it, and without.
             for level in [Level::new(), Level::baseline()] {
-                dispatch!(level, simd => case.check(simd, row, found));
+                dispatch!(level, simd => case.check(simd, row, &truths, found));
             }
         }
     }
