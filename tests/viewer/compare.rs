@@ -73,7 +73,7 @@ fn difference([a, b]: &[Image; 2]) -> Image {
 
 #[test]
 fn keys_show_two_pictures_and_their_difference_in_one_zoom() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let (folder, pictures) = pictures();
@@ -131,7 +131,7 @@ fn keys_show_two_pictures_and_their_difference_in_one_zoom() {
 
 #[test]
 fn a_click_keeps_both_values_of_a_pixel_and_how_far_they_are_apart() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let (folder, [a, b]) = pictures();
@@ -186,7 +186,7 @@ fn a_click_keeps_both_values_of_a_pixel_and_how_far_they_are_apart() {
 
 #[test]
 fn the_menu_and_the_keys_are_those_of_pictures() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let (folder, [a, b]) = pictures();
@@ -224,7 +224,7 @@ fn the_menu_and_the_keys_are_those_of_pictures() {
 
 #[test]
 fn what_is_printed_and_the_status_are_those_without_the_window() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let (folder, _) = pictures();
@@ -265,7 +265,7 @@ fn pictures_of_any_width_and_height_keep_their_aspect() {
         ([200, 100], [400 + PANEL_WIDTH, 378], [0, 89]),
         ([60, 200], [120 + PANEL_WIDTH, 400], [0, 0]),
     ] {
-        let Some(xvfb) = Xvfb::start(&[]) else {
+        let Some(xvfb) = Xvfb::lent() else {
             return;
         };
         let folder = tempfile::tempdir().unwrap();
@@ -314,7 +314,7 @@ fn pictures_of_any_width_and_height_keep_their_aspect() {
 
 #[test]
 fn what_is_shown_is_saved_without_a_word_on_standard_output() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let (folder, pictures) = pictures();

@@ -58,7 +58,7 @@ fn a_server_without_what_a_window_needs_is_one_line() {
 
 #[test]
 fn x11_serves_where_wayland_is_named_but_not_there() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let nowhere = ("WAYLAND_DISPLAY", "/nowhere/wayland-0");
@@ -103,7 +103,7 @@ fn the_death_of_the_server_is_one_line() {
 
 #[test]
 fn a_scale_factor_that_is_none_is_one_line() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let display = ("DISPLAY", &*xvfb.display);
@@ -115,7 +115,7 @@ fn a_scale_factor_that_is_none_is_one_line() {
 
 #[test]
 fn too_few_files_are_one_line() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let mut refused = 0;

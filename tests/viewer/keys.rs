@@ -170,7 +170,7 @@ fn stepping_shows_the_frames_of_the_document_and_starts_again() {
     session.type_keys("q");
     session.program.left();
 
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -181,7 +181,7 @@ fn stepping_shows_the_frames_of_the_document_and_starts_again() {
 
 #[test]
 fn a_static_stage_leaves_after_its_frames_too() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

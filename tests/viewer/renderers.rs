@@ -30,7 +30,7 @@ fn flat(grey: f64, seconds: f64) -> String {
 
 /// The viewer with a Python program of this text, and its path.
 fn view(text: &str, arguments: &[&str]) -> Option<(Session, std::path::PathBuf)> {
-    let xvfb = Xvfb::start(&[])?;
+    let xvfb = Xvfb::lent()?;
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!(
         "flat-{}-{:?}.py",
         std::process::id(),
@@ -258,7 +258,7 @@ fn the_frame_rate_of_a_slow_program_counts_its_pictures() {
 
 #[test]
 fn the_death_of_the_server_leaves_no_program_running() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
@@ -332,7 +332,7 @@ fn shows_scene(session: &Session, text: &str) {
 
 #[test]
 fn a_changed_scene_file_is_shown_and_a_refused_one_leaves_the_last_scene() {
-    let Some(xvfb) = Xvfb::start(&[]) else {
+    let Some(xvfb) = Xvfb::lent() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -62,7 +62,7 @@ impl Session {
     /// Starts the program with `arguments` under an Xvfb, waits for its first frame and gives it
     /// the keyboard. `None` where there is no Xvfb.
     pub fn start(arguments: &[&str]) -> Option<Session> {
-        Some(Session::on(Xvfb::start(&[])?, arguments, &[]))
+        Some(Session::on(Xvfb::lent()?, arguments, &[]))
     }
 
     /// The same on an Xvfb that runs, with further variables in the program's environment.

@@ -1,24 +1,94 @@
-//! An X server without a screen, for one test.
+//! X servers without a screen, each for one test at a time.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
-use std::sync::mpsc;
+use std::sync::{Mutex, mpsc};
 use std::thread;
 
-use super::DEADLINE;
+use rustix::process::{Pid, Signal, kill_process};
+use x11rb::connection::Connection as _;
+use x11rb::protocol::xproto::ConnectionExt as _;
 
-/// A running Xvfb. It ends with SIGTERM when dropped, also by a panic, and then removes its socket
-/// and its lock.
+use super::DEADLINE;
+use super::program::wait_for;
+
+/// A running Xvfb. It ends when dropped, also by a panic, unless another test may have it next.
 pub struct Xvfb {
-    process: Child,
+    server: Option<Server>,
     /// As DISPLAY names it.
     pub display: String,
+    is_lent: bool,
+}
+
+/// Xvfbs that tests lend one another: a start takes as much processor time as some tests.
+static LENDING: Mutex<Lending> = Mutex::new(Lending {
+    used: 0,
+    idle: Vec::new(),
+});
+
+struct Lending {
+    /// How many Xvfbs tests have, also such as are not lent.
+    used: usize,
+    /// They end when no test has an Xvfb, since the end of the test program drops nothing.
+    idle: Vec<Server>,
 }
 
 impl Xvfb {
     /// Starts one with a screen of 1280 × 1024 pixels and further `arguments`. `None`, and a line
     /// on standard error, where there is no Xvfb; where CI is set there must be one.
     pub fn start(arguments: &[&str]) -> Option<Xvfb> {
+        Some(Xvfb::new(Server::start(arguments)?, false))
+    }
+
+    /// One without further arguments, for a test that leaves nothing on it: another test may have
+    /// had it before.
+    pub fn lent() -> Option<Xvfb> {
+        let idle = LENDING.lock().unwrap().idle.pop();
+        let server = match idle {
+            Some(server) => server,
+            None => Server::start(&[])?,
+        };
+        server.clear();
+        Some(Xvfb::new(server, true))
+    }
+
+    fn new(server: Server, is_lent: bool) -> Xvfb {
+        LENDING.lock().unwrap().used += 1;
+        Xvfb {
+            display: server.display.clone(),
+            server: Some(server),
+            is_lent,
+        }
+    }
+
+    /// Ends it at once, as a crash would.
+    pub fn crash(mut self) {
+        self.server.take().unwrap().process.kill().unwrap();
+    }
+}
+
+impl Drop for Xvfb {
+    fn drop(&mut self) {
+        let mut lending = LENDING.lock().unwrap();
+        lending.used -= 1;
+        // A test that fails may leave keys pressed.
+        if self.is_lent && !thread::panicking() {
+            lending.idle.extend(self.server.take());
+        }
+        if lending.used == 0 {
+            lending.idle.clear();
+        }
+    }
+}
+
+/// The process. It ends with SIGTERM when dropped, and then removes its socket and its lock.
+struct Server {
+    process: Child,
+    display: String,
+}
+
+impl Server {
+    fn start(arguments: &[&str]) -> Option<Server> {
         let spawned = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1280x1024x24"])
             .args(["-nolisten", "tcp", "-noreset"])
@@ -45,7 +115,7 @@ impl Xvfb {
             let _ = BufReader::new(output).read_line(&mut line);
             let _ = sender.send(line);
         });
-        let mut xvfb = Xvfb {
+        let mut server = Server {
             process,
             display: String::new(),
         };
@@ -53,20 +123,29 @@ impl Xvfb {
             .recv_timeout(DEADLINE)
             .expect("Xvfb says on which display it is");
         let number: u32 = number.trim().parse().expect("the number of Xvfb's display");
-        xvfb.display = format!(":{number}");
-        Some(xvfb)
+        server.display = format!(":{number}");
+        Some(server)
     }
 
-    /// Ends it at once, as a crash would.
-    pub fn crash(mut self) {
-        self.process.kill().unwrap();
+    /// Waits until the last test's windows are gone, and moves the pointer to the middle of the
+    /// screen, where it is at first.
+    fn clear(&self) {
+        let (connection, screen) = x11rb::connect(Some(&self.display)).unwrap();
+        let screen = &connection.setup().roots[screen];
+        wait_for("the last test's windows to be gone", || {
+            let tree = connection.query_tree(screen.root).unwrap();
+            tree.reply().unwrap().children.is_empty().then_some(())
+        });
+        let middle = [screen.width_in_pixels, screen.height_in_pixels].map(|size| size as i16 / 2);
+        let (none, [x, y]) = (x11rb::NONE, middle);
+        let moved = connection.warp_pointer(none, screen.root, 0, 0, 0, 0, x, y);
+        moved.unwrap().check().unwrap();
     }
 }
 
-impl Drop for Xvfb {
+impl Drop for Server {
     fn drop(&mut self) {
-        let kill = format!("kill -TERM {}", self.process.id());
-        let _ = Command::new("sh").args(["-c", &kill]).status();
+        let _ = kill_process(Pid::from_child(&self.process), Signal::TERM);
         let _ = self.process.wait();
     }
 }
