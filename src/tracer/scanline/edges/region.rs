@@ -13,8 +13,8 @@
 
 use bumpalo::Bump;
 use bumpalo_herd::Member;
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch};
 
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::coarse::CoarseHalfPlane;
@@ -140,6 +140,12 @@ impl<'f> Region<'f> {
             self.narrow(&mut band, row, grid);
         }
         band
+    }
+
+    /// As [`Region::cross`], but compiled once: for callers that cross regions between other work.
+    #[inline(never)]
+    pub(crate) fn cross_at(&self, level: Level, row: u32, grid: Grid) -> BandColumns {
+        dispatch!(level, simd => self.cross(simd, row, grid))
     }
 
     /// The same as far as bounds on roots tell.

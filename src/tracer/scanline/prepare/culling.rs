@@ -6,7 +6,7 @@
 //! hides what is seen.
 
 use bumpalo::Bump;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Level;
 
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
@@ -93,18 +93,13 @@ impl<'f> Tiles<'f> {
     }
 
     fn columns(&self, region: &Region<'_>, up: u32) -> TileRowColumns {
-        dispatch!(self.level, simd => self.columns_with(simd, region, up))
-    }
-
-    #[inline(always)]
-    fn columns_with<S: Simd>(&self, simd: S, region: &Region<'_>, up: u32) -> TileRowColumns {
         let (_, (from, to)) = self.of(0, up);
         let mut columns = TileRowColumns {
             possible: (self.grid.size, 0),
             certain: (0, self.grid.size),
         };
         for first in (from..to).step_by(ROWS) {
-            let band = region.cross(simd, first, self.grid);
+            let band = region.cross_at(self.level, first, self.grid);
             for row in 0..((to - first) as usize).min(ROWS) {
                 let ends = |ends: &[[u32; ROWS]; 2]| (ends[0][row], ends[1][row]);
                 let (possible, certain) = (ends(&band.possible), ends(&band.certain));

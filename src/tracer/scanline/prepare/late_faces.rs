@@ -120,7 +120,7 @@ impl BandRegions for KeptRegions<'_, '_> {
     #[inline(always)]
     fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns {
         match &self.all[number] {
-            KeptRegion::Whole(region) => region.cross(simd, first, grid),
+            KeptRegion::Whole(region) => region.cross_at(simd.level(), first, grid),
             KeptRegion::Shadow {
                 half_planes, cast, ..
             } => {

@@ -6,7 +6,6 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use bumpalo::Bump;
 use bumpalo_herd::Member;
-use fearless_simd::dispatch;
 
 use crate::scene::Solid;
 use crate::tracer::arena::collect;
@@ -165,7 +164,7 @@ impl<'f> LateFaces<'f> {
         let numbers = collect(spare, numbers.map(|(number, _)| number));
         let again = |cast| {
             let shadow = self.shadow(cast, source, spare);
-            dispatch!(level, simd => shadow.cross(simd, first, grid))
+            shadow.cross_at(level, first, grid)
         };
         let regions = KeptRegions {
             all: regions,
