@@ -39,7 +39,7 @@ pub(super) struct OnDemand<T> {
     made: OnceLock<T>,
     /// The part of a frame before, whose memory is reused.
     before: Mutex<T>,
-    /// How often [`OnDemand::get_after`] was called.
+    /// How often [`OnDemand::pays_after`] was called before the part was made.
     calls: AtomicU32,
 }
 
@@ -54,14 +54,10 @@ impl<T: Default> OnDemand<T> {
         })
     }
 
-    /// The part, unless it is not made and there were no more than so many calls: for a part that
-    /// takes longer to make than a few do without.
-    pub(super) fn get_after(&self, calls: u32, make: impl FnOnce(&mut T)) -> Option<&T> {
-        let is_early = self.made.get().is_none() && {
-            let before = self.calls.fetch_add(1, Ordering::Relaxed);
-            before < calls
-        };
-        (!is_early).then(|| self.get(make))
+    /// Whether the part is made, or this is not one of the first so many calls of a frame: for a
+    /// part that takes longer to make than a few do without.
+    pub(super) fn pays_after(&self, calls: u32) -> bool {
+        self.made.get().is_some() || self.calls.fetch_add(1, Ordering::Relaxed) >= calls
     }
 
     fn clear(&mut self) {

@@ -28,8 +28,11 @@ pub(super) struct Extents<'f> {
     pub(super) casters_on_surface: Option<SurfaceCasterLookup<'f>>,
 }
 
-/// So many pixels of a frame ask all solids before tiles are made.
+/// So many questions about the pixels of a view look at all solids before tiles are made.
 const FEW: u32 = 16;
+
+/// The most solids at a pixel that are sorted without tiles.
+const MOST: usize = 32;
 
 /// The extents of all solids.
 #[derive(Clone, Copy)]
@@ -37,7 +40,7 @@ pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [SolidExtent],
     /// N.
     size: u32,
-    /// Made when more than [`FEW`] pixels asked: rows leave few in doubt, and mostly none.
+    /// Made after [`FEW`] questions: rows leave few pixels in doubt, and mostly none.
     tiles: &'f OnDemand<Tiles>,
 }
 
@@ -82,20 +85,39 @@ impl<'f> ExtentsOfSolids<'f> {
     /// The solids that can be seen in a pixel, the nearest first.
     pub(super) fn at(&self, pixel: (u32, u32)) -> impl Iterator<Item = usize> + use<'f> {
         let (all, size) = (self.all, self.size);
-        let holds = move |solid: &usize| all[*solid].extent.holds(pixel.0, pixel.1);
-        let make = |tiles: &mut Tiles| find_tiles(tiles, all, size);
-        let (listed, found) = match self.tiles.get_after(FEW, make) {
-            Some(tiles) => (tiles.solids_at(pixel), Vec::new()),
+        let holds = move |solid: &u16| all[usize::from(*solid)].extent.holds(pixel.0, pixel.1);
+        let few = match self.tiles.pays_after(FEW) {
+            true => None,
+            false => nearest_first((0..all.len() as u16).filter(holds), all),
+        };
+        let (few, count, listed) = match few {
+            Some((few, count)) => (few, count, &[][..]),
             None => {
-                let mut found: Vec<usize> = (0..all.len()).filter(holds).collect();
-                let nearest = |solid: usize| all[solid].entry.nearest;
-                found.sort_by(|a, b| nearest(*a).total_cmp(&nearest(*b)));
-                (&[][..], found)
+                let tiles = self.tiles.get(|tiles| find_tiles(tiles, all, size));
+                ([0; MOST], 0, tiles.solids_at(pixel))
             }
         };
-        let listed = listed.iter().map(|solid| usize::from(*solid));
-        listed.filter(holds).chain(found)
+        let listed = listed.iter().copied().filter(holds);
+        listed.chain(few.into_iter().take(count)).map(usize::from)
     }
+}
+
+/// These solids, given by increasing number, and how many they are: the nearest first, and of
+/// several as near, the first in the scene. `None` if they are more than [`MOST`].
+fn nearest_first(
+    solids: impl Iterator<Item = u16>,
+    all: &[SolidExtent],
+) -> Option<([u16; MOST], usize)> {
+    let nearest = |solid: u16| all[usize::from(solid)].entry.nearest;
+    let (mut sorted, mut count) = ([0; MOST], 0);
+    for solid in solids {
+        let is_nearer = |other: &u16| nearest(solid).total_cmp(&nearest(*other)).is_lt();
+        *sorted.get_mut(count)? = solid;
+        let at = sorted[..count].iter().position(is_nearer).unwrap_or(count);
+        count += 1;
+        sorted[at..count].rotate_right(1);
+    }
+    Some((sorted, count))
 }
 
 /// Finds the tiles that solids reach.
@@ -247,8 +269,9 @@ mod tests {
             columns: range(),
             rows: range(),
         });
+        // Some are as near as others.
         let entry = |solid: usize| Entry {
-            nearest: (solid * 7 % count) as f64,
+            nearest: (solid * 7 % count / 4) as f64,
             farthest: count as f64,
         };
         let solids = extents.enumerate();
@@ -271,7 +294,7 @@ mod tests {
             for pixel in (0..SIZE).flat_map(|row| (0..SIZE).map(move |column| (column, row))) {
                 let holds = |solid: &usize| all[*solid].extent.holds(pixel.0, pixel.1);
                 let mut expected: Vec<usize> = (0..count).filter(holds).collect();
-                expected.sort_by_key(|&solid| solid * 7 % count);
+                expected.sort_by_key(|&solid| solid * 7 % count / 4);
                 let listed = tiles.solids_at(pixel).iter();
                 let listed = listed.map(|solid| usize::from(*solid));
                 assert_eq!(listed.filter(holds).collect::<Vec<_>>(), expected);

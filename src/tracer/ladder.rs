@@ -340,8 +340,8 @@ impl RowPixels for Ladder<'_> {
 impl Pixels for Ladder<'_> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
         let ((decision, color), rung) = self.settle(&PixelAt(column, row));
-        // A colour halfway between two floats needs arbitrary precision, which is too slow for every
-        // pixel of a face: so each colour is settled once.
+        // A colour halfway between two floats needs arbitrary precision, which is too slow for each
+        // pixel of a face: so it is settled once.
         let settle = || self.color(decision);
         let color = color.unwrap_or_else(|| *self.colors.get(decision).get_or_init(settle));
         ((decision, color), rung)

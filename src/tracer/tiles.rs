@@ -22,7 +22,8 @@ const MAX_UNTILED: usize = 16;
 
 impl Tiles {
     /// Finds the tiles of `count` solids in a picture of `size` rows. `extent` is the half-open
-    /// range of columns, and that of rows, in which a solid is seen; `nearest` tells how near.
+    /// range of columns, and that of rows, in which a solid is seen; `nearest` tells how near. Of
+    /// several as near, the first in the scene comes first.
     pub(super) fn find(
         &mut self,
         count: usize,
@@ -69,7 +70,7 @@ impl Tiles {
         order.clear();
         order.extend((0..count).map(|solid| solid as u16));
         let nearest = |solid: u16| nearest(usize::from(solid));
-        order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)));
+        order.sort_unstable_by(|a, b| nearest(*b).total_cmp(&nearest(*a)).then(b.cmp(a)));
         for &solid in order.iter() {
             for tile in reached(usize::from(solid)) {
                 starts[tile] -= 1;

@@ -43,8 +43,8 @@ impl Slot {
 
 impl FaceSplitter {
     /// Prepares for rows of a frame in which so many solids have late faces. `enough` edges are
-    /// forgotten before others are added: no crowd takes more memory than they and the edges of
-    /// one solid.
+    /// forgotten before others are added: no crowd takes more memory than twice as many and the
+    /// edges of one solid.
     pub(crate) fn begin(&mut self, count: usize, enough: usize) {
         self.first = None;
         self.enough = enough;

@@ -23,8 +23,9 @@ impl CoarseHalfPlane {
     pub(crate) fn new(half_plane: &HalfPlane, grid: Grid) -> Option<CoarseHalfPlane> {
         let (root, rightward) = half_plane.root()?;
         let (at, per_y) = (root.at as f32, root.per_y as f32);
-        // Both differences are exact. The terms grow by 2⁻²³ of themselves at most, and what the
-        // slack allows for the rounding of their sum is more than that larger than the rounding.
+        // Both differences are exact. The terms grow by 2⁻²³ of themselves at most, or by less than
+        // 2⁻¹⁴⁹, and what the slack allows for the rounding of their sum is more than that larger
+        // than the rounding.
         let moved =
             (root.at - f64::from(at)).abs() + (root.per_y - f64::from(per_y)).abs() * grid.max;
         // Rounding to f32 takes away half as much as the factor adds.

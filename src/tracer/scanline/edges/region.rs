@@ -100,7 +100,7 @@ impl<'f> Region<'f> {
         self.rows
     }
 
-    /// Those of these rows in which its sides leave any columns.
+    /// Its rows, without those in which a left side certainly lies to the right of a right side.
     pub(crate) fn rows_between_sides(&self, grid: Grid) -> (u32, u32) {
         let roots = || self.half_planes.iter().chain(self.clip);
         let roots = || roots().filter_map(HalfPlane::root);

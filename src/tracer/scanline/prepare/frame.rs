@@ -27,7 +27,7 @@ pub(crate) struct Crowd {
     pub(crate) low_from: f64,
     /// The mean number of shadows on front faces in a row from which on faces are late.
     pub(crate) late_from: u64,
-    /// How many bytes the regions of late faces may take.
+    /// How many bytes the regions of late faces may take, besides what tells their casters.
     pub(crate) late_bytes: usize,
     /// The number of edges of late faces from which on a thread forgets them.
     pub(crate) late_edges: usize,

@@ -83,7 +83,8 @@ pub(crate) struct LateSource<'f> {
     pub(crate) level: Level,
     /// The memory for what threads make.
     pub(crate) threads: &'f Herd,
-    /// How many bytes of it regions may take; each thread may go beyond this with one solid.
+    /// How many bytes of it regions may take. Each thread may go beyond this with one solid, and
+    /// then each shadow takes what tells its caster and its rows.
     pub(crate) most: usize,
     /// How many they take.
     pub(crate) taken: AtomicUsize,

@@ -7,8 +7,10 @@ use std::sync::atomic::Ordering::Relaxed;
 use bumpalo::Bump;
 use bumpalo_herd::Member;
 
+use crate::image::MAX_SIZE;
 use crate::scene::Solid;
 use crate::tracer::arena::collect;
+use crate::tracer::decision::Decision;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind, RegionKinds, Regions};
@@ -25,8 +27,11 @@ use crate::tracer::scanline::prepare::shadows::shadows_on_face;
 use crate::tracer::scanline::row_edges::RowEdges;
 use crate::tracer::scanline::write::paint::AllPaints;
 
-/// In a solid of more rows, each shadow is asked for its own.
+/// In a solid of more rows, each shadow's own rows are found.
 const FEW_ROWS: u32 = 4 * ROWS as u32;
+
+// Rows are kept as u16.
+const _: () = assert!(MAX_SIZE <= u16::MAX as u32);
 
 impl<'f> LateFaces<'f> {
     /// The faces. The first call makes them; `spare` is memory for the work, free afterwards.
@@ -34,7 +39,8 @@ impl<'f> LateFaces<'f> {
         self.made.get_or_init(|| {
             spare.reset();
             let memory = source.threads.get();
-            let (faces, regions, paints) = self.make(source, spare);
+            let color = |decision| source.pixels.color(decision);
+            let (faces, regions, paints) = self.make(source, &color, spare);
             let has_memory = source.taken.load(Relaxed) < source.most;
             let is_ellipse = |region: &Region<'_>| region.ellipse().is_some();
             let is_kept = has_memory || !regions.all.iter().any(is_ellipse);
@@ -53,16 +59,16 @@ impl<'f> LateFaces<'f> {
         })
     }
 
-    /// The faces, their regions and their paints.
+    /// The faces, their regions and their paints. `color` tells the colour of a decision.
     fn make<'s>(
         &self,
         source: &'s LateSource<'f>,
+        color: &'s dyn Fn(Decision) -> [f32; 3],
         spare: &'s Bump,
     ) -> (FrontFaces<'s>, Regions<'s>, AllPaints<'s>) {
-        let color = |decision| source.pixels.color(decision);
         let picture = source.pixels.bounded();
         let appearances = Appearances::new(picture, picture.view(self.mirrored), self.mirrored);
-        let mut parts = Builder::new((source.grid, source.level), &color, u64::MAX, 0, spare);
+        let mut parts = Builder::new((source.grid, source.level), color, u64::MAX, 0, spare);
         let faces = appearances.front_faces(&self.outlined, self.tetrahedron, &mut parts);
         (faces, parts.edge_table.regions(), parts.paints.all())
     }
@@ -149,7 +155,8 @@ impl<'f> LateFaces<'f> {
         let reach = |(from, to): (u32, u32)| from < first + ROWS as u32 && first < to;
         let (level, grid) = (source.level, source.grid);
         let Some(regions) = faces.regions else {
-            let (_, regions, _) = self.make(source, spare);
+            // Nobody asks for these paints.
+            let (_, regions, _) = self.make(source, &|_| [0.0; 3], spare);
             let numbers = (0..).zip(regions.all);
             let numbers = numbers.filter(|(_, region)| reach(region.rows()));
             let numbers = collect(spare, numbers.map(|(number, _)| number));
@@ -226,7 +233,7 @@ mod tests {
                         let (mut kept, mut made) = (RowEdges::default(), RowEdges::default());
                         late.cross(faces, first, &mut kept, source, &mut spare);
                         spare.reset();
-                        let (_, regions, _) = late.make(source, &spare);
+                        let (_, regions, _) = late.make(source, &|_| [0.0; 3], &spare);
                         let numbers: Vec<u32> = (0..regions.all.len() as u32).collect();
                         made.add(&regions, &numbers, first, source.level, source.grid);
                         for row in first..first + ROWS as u32 {

@@ -84,7 +84,8 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
     #[inline(always)]
     pub(crate) fn classify(&self, [x, next]: [f64; 2], last: f64, pixels: u64) -> Classes {
         let sphere = self.sphere;
-        // s² falls with |q|, and rounding is monotonic: so s² is least at an end.
+        // s² falls with |q|, and rounding is monotonic: so s² is least at an end. The margin of the
+        // zones allows for fused operations.
         let squares = [x, last].map(|x| {
             let q = x - sphere.center_x;
             (sphere.squared_radius - self.m * self.m) - q * q
