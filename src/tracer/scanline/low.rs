@@ -45,7 +45,8 @@ impl LowEdges {
         if self.first != Some(first) {
             self.first = Some(first);
             let low = table.low(first);
-            self.edges.cross(&table.regions, low, first, level, grid);
+            self.edges.clear();
+            self.edges.add(&table.regions, low, first, level, grid);
         }
         self.edges.reach(row)
     }

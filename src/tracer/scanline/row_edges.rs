@@ -52,19 +52,6 @@ pub(crate) struct RowEdges {
 }
 
 impl RowEdges {
-    /// Crosses the regions of these numbers with the band of rows from `first` on.
-    pub(crate) fn cross(
-        &mut self,
-        regions: &impl BandRegions,
-        numbers: &[u32],
-        first: u32,
-        level: Level,
-        grid: Grid,
-    ) {
-        self.clear();
-        self.add(regions, numbers, first, level, grid);
-    }
-
     /// Removes all edges.
     pub(crate) fn clear(&mut self) {
         self.rows.iter_mut().for_each(Vec::clear);
