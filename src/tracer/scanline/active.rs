@@ -284,12 +284,12 @@ impl ActiveEdges {
         for gap in 0..self.gaps.len() {
             let to = self.sorted_columns[gap][row];
             if self.gaps[gap] == Packed::UNRESOLVED && from < to {
-                self.coverage.look(&table.regions.kinds);
                 self.gaps[gap] = Packed::new(resolve(&self.coverage));
             }
             from = to;
             if let Some(edge) = self.edges.get(gap) {
-                self.coverage.cross(edge.region(), edge.cover());
+                let kinds = &table.regions.kinds;
+                self.coverage.cross(kinds, edge.region(), edge.cover());
             }
         }
     }

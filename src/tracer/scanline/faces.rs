@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::tracer::scanline::grid::{Columns, ROWS};
 use crate::tracer::scanline::prepare::late_faces::SplitFaces;
 use crate::tracer::scanline::row_edges::RowEdges;
-use crate::tracer::scanline::visibility::counted::CountedCoverage;
+use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::resolve::front_face;
 use crate::tracer::scanline::visibility::visible::Shown;
 
@@ -21,7 +21,7 @@ pub(crate) struct FaceSplitter {
     slot_of: Vec<u32>,
     /// The edges of all faces that have slots.
     edges: RowEdges,
-    coverage: CountedCoverage,
+    coverage: Coverage,
     parts: Vec<(Columns, Shown)>,
 }
 

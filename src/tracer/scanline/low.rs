@@ -65,6 +65,7 @@ impl LowEdges {
         active: &ActiveEdges,
         mut resolve: impl FnMut(&Coverage) -> Visible,
     ) {
+        let kinds = &table.regions.kinds;
         self.spans.clear();
         let mut low = self.edges.sorted(row).iter().peekable();
         let (mut from, mut covering) = (0, 0);
@@ -76,7 +77,6 @@ impl LowEdges {
                     let visible = if covering == 0 {
                         alone
                     } else {
-                        self.coverage.look(&table.regions.kinds);
                         Packed::new(resolve(&self.coverage))
                     };
                     match self.spans.last_mut() {
@@ -88,15 +88,15 @@ impl LowEdges {
                 let Some(edge) = next.map(|next| next.edge()) else {
                     break;
                 };
-                self.coverage.cross(edge.region(), edge.cover());
+                self.coverage.cross(kinds, edge.region(), edge.cover());
                 covering += edge.step();
             }
             if let Some(edge) = edge {
-                self.coverage.cross(edge.region(), edge.cover());
+                self.coverage.cross(kinds, edge.region(), edge.cover());
             }
         }
         for edge in low.map(|next| next.edge()) {
-            self.coverage.cross(edge.region(), edge.cover());
+            self.coverage.cross(kinds, edge.region(), edge.cover());
         }
     }
 

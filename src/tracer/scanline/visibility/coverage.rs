@@ -1,8 +1,7 @@
 //! Coverage: which regions cover a column, and so which solids, shadows and mirror images are met.
 //!
-//! Coverage follows the edges of a row from the left to the right, and keeps the regions that cover
-//! the present column. Few columns are looked at: only there their solids and shadows are told
-//! apart.
+//! Coverage follows the edges of a row from the left to the right, and changes at each. Hundreds of
+//! shadows may cover a column, so that they are counted; few solids do, which are listed.
 
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind, RegionKinds, SolidIndex};
 
@@ -17,7 +16,7 @@ pub(crate) enum Cover {
 
 impl Cover {
     /// Whether the region covers the column; `None` where that is in doubt.
-    pub(super) fn holds(self) -> Option<bool> {
+    fn holds(self) -> Option<bool> {
         match self {
             Cover::Not => Some(false),
             Cover::Certainly => Some(true),
@@ -26,56 +25,45 @@ impl Cover {
     }
 }
 
-/// What tells which face of a tetrahedron a column sees, and whether the face is in shadow there.
-pub(crate) trait FaceCoverage {
-    /// Whether a receiver is in shadow in the column; `None` where that is in doubt.
-    fn in_shadow(&self, receiver: Receiver) -> Option<bool>;
-
-    /// Whether a region covers the column; `None` where that is in doubt.
-    fn holds(&self, region: usize) -> Option<bool>;
+/// How a region covers the columns to the left and to the right of an edge.
+#[derive(Clone, Copy)]
+struct Crossing {
+    from: Cover,
+    to: Cover,
 }
 
 /// How many regions of one kind cover the column.
 #[derive(Clone, Copy, Default)]
-pub(super) struct CoverCount {
+struct CoverCount {
     certain: u32,
     /// How many more may cover it.
     possible: u32,
 }
 
 impl CoverCount {
-    pub(super) fn add(&mut self, cover: Cover) {
-        match cover {
-            Cover::Not => {}
-            Cover::Certainly => self.certain += 1,
-            Cover::Possibly => self.possible += 1,
-        }
-    }
-
-    /// Takes back an [`CoverCount::add`] of the same cover.
-    pub(super) fn remove(&mut self, cover: Cover) {
-        match cover {
-            Cover::Not => {}
-            Cover::Certainly => self.certain -= 1,
-            Cover::Possibly => self.possible -= 1,
-        }
+    fn cross(&mut self, Crossing { from, to }: Crossing) {
+        // No processor predicts the order of edges, so this has no branches.
+        let change = |cover: Cover| u32::from(to == cover).wrapping_sub(u32::from(from == cover));
+        self.certain = self.certain.wrapping_add(change(Cover::Certainly));
+        self.possible = self.possible.wrapping_add(change(Cover::Possibly));
     }
 
     /// Whether any of the regions covers the column; `None` where that is in doubt.
-    pub(super) fn any(self) -> Option<bool> {
+    fn any(self) -> Option<bool> {
         (self.certain > 0 || self.possible == 0).then_some(self.certain > 0)
     }
 }
 
-/// The solids that eye rays or mirrored rays meet in a column, by increasing index.
+/// The solids that eye rays or mirrored rays meet in a column.
 #[derive(Default)]
 pub(crate) struct CoveringSolids {
+    /// Those that are certainly met, in any order.
     solids: Vec<SolidIndex>,
     count: CoverCount,
 }
 
 impl CoveringSolids {
-    /// The solids, if none is in doubt.
+    /// The solids in any order, if none is in doubt.
     pub(crate) fn certain(&self) -> Option<&[SolidIndex]> {
         (self.count.possible == 0).then_some(&self.solids)
     }
@@ -85,10 +73,14 @@ impl CoveringSolids {
         self.count = CoverCount::default();
     }
 
-    fn add(&mut self, solid: SolidIndex, cover: Cover) {
-        self.count.add(cover);
-        if cover == Cover::Certainly {
+    fn cross(&mut self, solid: SolidIndex, crossing: Crossing) {
+        self.count.cross(crossing);
+        if crossing.to == Cover::Certainly {
             self.solids.push(solid);
+        } else if crossing.from == Cover::Certainly
+            && let Some(index) = self.solids.iter().rposition(|other| *other == solid)
+        {
+            self.solids.swap_remove(index);
         }
     }
 }
@@ -98,8 +90,6 @@ impl CoveringSolids {
 pub(crate) struct Coverage {
     /// By the number of the region.
     covers: Vec<Cover>,
-    /// The regions that cover the column certainly or possibly.
-    covering: Vec<usize>,
     /// Solids seen directly.
     pub(crate) direct: CoveringSolids,
     /// Solids seen in the mirror.
@@ -107,8 +97,6 @@ pub(crate) struct Coverage {
     surface: CoverCount,
     /// The shadows on each receiver.
     shadows: Vec<CoverCount>,
-    /// The receivers whose entries in `shadows` are in use.
-    receivers: Vec<Receiver>,
 }
 
 impl Coverage {
@@ -116,61 +104,39 @@ impl Coverage {
     pub(crate) fn clear(&mut self, kinds: &RegionKinds<'_>) {
         self.covers.clear();
         self.covers.resize(kinds.all.len(), Cover::Not);
-        self.covering.clear();
-        self.shadows.clear();
-        self.shadows.resize(kinds.receivers, CoverCount::default());
-        self.receivers.clear();
-    }
-
-    /// Goes across an edge of a region, to columns that the region covers as `to` tells.
-    pub(crate) fn cross(&mut self, region: usize, to: Cover) {
-        let from = std::mem::replace(&mut self.covers[region], to);
-        if from == Cover::Not {
-            self.covering.push(region);
-        } else if to == Cover::Not
-            && let Some(index) = self.covering.iter().rposition(|other| *other == region)
-        {
-            self.covering.swap_remove(index);
-        }
-    }
-
-    /// Tells solids and shadows of the present column apart.
-    pub(crate) fn look(&mut self, kinds: &RegionKinds<'_>) {
         self.direct.clear();
         self.mirrored.clear();
         self.surface = CoverCount::default();
-        for Receiver(number) in self.receivers.drain(..) {
-            self.shadows[number as usize] = CoverCount::default();
-        }
-        for &region in &self.covering {
-            let cover = self.covers[region];
-            match kinds.all[region] {
-                RegionKind::Surface => self.surface.add(cover),
-                RegionKind::Shadow(receiver) => {
-                    self.shadows[receiver.0 as usize].add(cover);
-                    self.receivers.push(receiver);
-                }
-                RegionKind::Direct(solid) => self.direct.add(solid, cover),
-                RegionKind::Mirrored(solid) => self.mirrored.add(solid, cover),
-                RegionKind::Crease => {}
-            }
-        }
-        self.direct.solids.sort_unstable();
-        self.mirrored.solids.sort_unstable();
+        self.shadows.clear();
+        self.shadows.resize(kinds.receivers, CoverCount::default());
     }
 
-    /// Whether the column meets the surface.
+    /// Goes across an edge of a region, to columns that the region covers as `to` tells.
+    #[inline]
+    pub(crate) fn cross(&mut self, kinds: &RegionKinds<'_>, region: usize, to: Cover) {
+        let from = std::mem::replace(&mut self.covers[region], to);
+        let crossing = Crossing { from, to };
+        match kinds.all[region] {
+            RegionKind::Surface => self.surface.cross(crossing),
+            RegionKind::Shadow(Receiver(number)) => self.shadows[number as usize].cross(crossing),
+            RegionKind::Direct(solid) => self.direct.cross(solid, crossing),
+            RegionKind::Mirrored(solid) => self.mirrored.cross(solid, crossing),
+            RegionKind::Crease => {}
+        }
+    }
+
+    /// Whether the column meets the surface; `None` where that is in doubt.
     pub(crate) fn surface(&self) -> Option<bool> {
         self.surface.any()
     }
-}
 
-impl FaceCoverage for Coverage {
-    fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
+    /// Whether a receiver is in shadow in the column; `None` where that is in doubt.
+    pub(crate) fn in_shadow(&self, Receiver(number): Receiver) -> Option<bool> {
         self.shadows[number as usize].any()
     }
 
-    fn holds(&self, region: usize) -> Option<bool> {
+    /// Whether a region covers the column; `None` where that is in doubt.
+    pub(crate) fn holds(&self, region: usize) -> Option<bool> {
         self.covers[region].holds()
     }
 }

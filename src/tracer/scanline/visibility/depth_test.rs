@@ -68,7 +68,8 @@ impl DepthTests {
         self.tests.len() > MANY
     }
 
-    /// Adds a test, which leaves it to each row what is in front.
+    /// Adds a test, which leaves it to each row what is in front of the candidates, given in any
+    /// order.
     pub(crate) fn defer(
         &mut self,
         mirrored: bool,
@@ -78,6 +79,7 @@ impl DepthTests {
     ) -> Visible {
         let first = self.candidates.len();
         self.candidates.extend(candidates);
+        self.candidates[first..].sort_unstable_by_key(|candidate| candidate.solid);
         self.tests.push(DepthTest {
             mirrored,
             candidates: first..self.candidates.len(),

@@ -6,7 +6,7 @@ use crate::tracer::scanline::prepare::frame::PreparedFrame;
 use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces};
 use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
-use crate::tracer::scanline::visibility::coverage::{Coverage, FaceCoverage};
+use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::depth_test::{Candidate, DepthTests};
 use crate::tracer::scanline::visibility::visible::{Shown, Visible};
 use crate::tracer::tetrahedron::last_entered;
@@ -115,7 +115,7 @@ fn candidate(solids: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage
 /// the gap shows of it.
 pub(crate) fn front_face(
     front_faces: &FrontFaces<'_>,
-    coverage: &impl FaceCoverage,
+    coverage: &Coverage,
 ) -> (Option<usize>, Shown) {
     let pairs = front_faces.pairs.iter();
     let pairs = pairs.map(|pair| (pair.front_faces, pair.crease));
@@ -126,7 +126,7 @@ pub(crate) fn front_face(
 }
 
 /// What a gap shows where it sees a front face.
-fn front_face_in(front_face: &FrontFace, coverage: &impl FaceCoverage) -> Shown {
+fn front_face_in(front_face: &FrontFace, coverage: &Coverage) -> Shown {
     match coverage.in_shadow(front_face.shadows) {
         Some(true) => Shown::Paint(front_face.in_shadow),
         Some(false) => Shown::Paint(front_face.outside),
