@@ -21,7 +21,7 @@ pub(crate) struct CoarseHalfPlane {
 impl CoarseHalfPlane {
     /// A coarse copy, if the border is not level and f32 holds its numbers.
     pub(crate) fn new(half_plane: &HalfPlane, grid: Grid) -> Option<CoarseHalfPlane> {
-        let (root, rightward) = half_plane.root()?;
+        let root = half_plane.root()?;
         let (at, per_y) = (root.at as f32, root.per_y as f32);
         // Both differences are exact. The terms grow by 2⁻²³ of themselves at most, or by less than
         // 2⁻¹⁴⁹, and what the slack allows for the rounding of their sum is more than that larger
@@ -35,7 +35,7 @@ impl CoarseHalfPlane {
             at,
             per_y,
             slack,
-            rightward,
+            rightward: root.rightward,
         })
     }
 }
@@ -44,7 +44,13 @@ impl Cut for CoarseHalfPlane {
     #[inline(always)]
     fn cut<S: Simd>(&self, _: S, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
         let [at, per_y, slack] = [self.at, self.per_y, self.slack].map(f64::from);
-        let root = Root { at, per_y, slack };
-        root.cut::<S>(self.rightward, y, enclosure);
+        let rightward = self.rightward;
+        let root = Root {
+            at,
+            per_y,
+            slack,
+            rightward,
+        };
+        root.cut::<S>(y, enclosure);
     }
 }

@@ -28,10 +28,8 @@ pub(crate) struct HalfPlane {
 /// The border of a half-plane, as rows cross it.
 #[derive(Clone, Copy)]
 enum Border {
-    /// The half-plane lies to the right of the root.
-    Left(Root),
-    /// The half-plane lies to the left of the root.
-    Right(Root),
+    /// A row crosses it at a root.
+    Sloping(Root),
     /// The border is level, or f64 does not tell that it is not.
     Horizontal {
         /// A bound on the error of constant + per_y · Y as a stand-in for the whole sum.
@@ -46,27 +44,24 @@ pub(super) struct Root {
     pub(super) per_y: f64,
     /// A bound on the error in columns.
     pub(super) slack: f64,
+    /// Whether the half-plane lies to the right of the root, and not to the left.
+    pub(super) rightward: bool,
 }
 
 impl Root {
-    /// Intersects enclosures of as many rows as there are lanes with what lies to the right of the
-    /// root, or to the left.
+    /// Intersects enclosures of as many rows as there are lanes with the half-plane.
     #[inline(always)]
-    pub(super) fn cut<S: Simd>(
-        &self,
-        rightward: bool,
-        y: S::f64s,
-        enclosure: &mut ColumnEnclosure<S::f64s>,
-    ) {
+    pub(super) fn cut<S: Simd>(&self, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
         let ColumnEnclosure { possible, certain } = enclosure;
         let root_column = y * self.per_y + self.at;
-        if rightward {
-            possible[0] = possible[0].max(root_column - self.slack);
-            certain[0] = certain[0].max(root_column + self.slack);
-        } else {
-            possible[1] = possible[1].min(root_column + self.slack);
-            certain[1] = certain[1].min(root_column - self.slack);
-        }
+        // No processor can predict on which side a half-plane lies: each bounds both ends, one of
+        // them at infinity.
+        const BEYOND: [[f64; 2]; 2] = [[f64::INFINITY, 0.0], [0.0, f64::INFINITY]];
+        let [left, right] = BEYOND[usize::from(self.rightward)];
+        possible[0] = possible[0].max(root_column - (self.slack + left));
+        certain[0] = certain[0].max(root_column + (self.slack - left));
+        possible[1] = possible[1].min(root_column + (self.slack + right));
+        certain[1] = certain[1].min(root_column - (self.slack - right));
     }
 }
 
@@ -124,7 +119,7 @@ impl HalfPlane {
         // The sum rounds by less than 2u of its terms twice.
         let error = (carried + magnitude * (4.0 * U)) * INFLATION;
         let is_sloping = (is_finite & !magnitude_of_x.simd_le(error)).to_bitmask();
-        let is_left = inverse.simd_gt(0.0).to_bitmask();
+        let is_rightward = inverse.simd_gt(0.0).to_bitmask();
         let level_error = (error + magnitude_of_x) * INFLATION;
         let terms = [constant.to_array(), per_x.to_array(), per_y.to_array()];
         let mut half_planes = [HalfPlane::IN_DOUBT; 4];
@@ -133,13 +128,14 @@ impl HalfPlane {
                 at: at.as_slice()[i],
                 per_y: root_per_y.as_slice()[i],
                 slack: slack.as_slice()[i],
+                rightward: is_rightward >> i & 1 == 1,
             };
-            let border = match (is_sloping >> i & 1, is_left >> i & 1) {
-                (0, _) => Border::Horizontal {
+            let border = if is_sloping >> i & 1 == 1 {
+                Border::Sloping(root)
+            } else {
+                Border::Horizontal {
                     error: level_error.as_slice()[i],
-                },
-                (_, 0) => Border::Right(root),
-                _ => Border::Left(root),
+                }
             };
             *half_plane = HalfPlane {
                 constant: terms[0][i],
@@ -246,24 +242,22 @@ impl HalfPlane {
 
     /// The same, with the sum computed only near the border.
     pub(crate) fn decide_near(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let Some((root, rightward)) = self.root() else {
+        let Some(root) = self.root() else {
             return self.decide(x, y);
         };
         let beyond = number_at(x, grid.half) - (y * root.per_y + root.at);
         if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
-            Some((beyond > 0.0) == rightward)
+            Some((beyond > 0.0) == root.rightward)
         } else {
             self.decide(x, y)
         }
     }
 
-    /// The border's root, if the border is not level, and whether the half-plane lies to the right
-    /// of it.
+    /// The border's root, if the border is not level.
     #[inline]
-    pub(super) fn root(&self) -> Option<(&Root, bool)> {
+    pub(super) fn root(&self) -> Option<&Root> {
         match &self.border {
-            Border::Left(root) => Some((root, true)),
-            Border::Right(root) => Some((root, false)),
+            Border::Sloping(root) => Some(root),
             Border::Horizontal { .. } => None,
         }
     }
@@ -288,8 +282,7 @@ impl Cut for HalfPlane {
     #[inline(always)]
     fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
         match &self.border {
-            Border::Left(root) => root.cut::<S>(true, y, enclosure),
-            Border::Right(root) => root.cut::<S>(false, y, enclosure),
+            Border::Sloping(root) => root.cut::<S>(y, enclosure),
             Border::Horizontal { error } => {
                 let ColumnEnclosure { possible, certain } = enclosure;
                 let sum = y * self.per_y.value() + self.constant.value();

@@ -105,8 +105,8 @@ impl<'f> Region<'f> {
         let roots = || self.half_planes.iter().chain(self.clip);
         let roots = || roots().filter_map(HalfPlane::root);
         let (mut low, mut high) = (-grid.max, grid.max);
-        for (left, _) in roots().filter(|(_, rightward)| *rightward) {
-            for (right, _) in roots().filter(|(_, rightward)| !rightward) {
+        for left in roots().filter(|root| root.rightward) {
+            for right in roots().filter(|root| !root.rightward) {
                 // The right root lies at most so far to the right of the left one: `apart` +
                 // `per_y` · Y. The slack of a root is more than rounding its terms again, so it is
                 // taken twice.
