@@ -245,7 +245,7 @@ impl<'f> Ladder<'f> {
                 // What is made while a pixel is decided is forgotten with the pixel: so all
                 // tetrahedra are made before.
                 for mirrored in [false, true] {
-                    picture.view(mirrored).tetrahedra.all().for_each(drop);
+                    picture.view(mirrored).tetrahedra.complete();
                 }
                 picture
             });

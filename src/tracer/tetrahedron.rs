@@ -32,34 +32,81 @@ pub(super) struct Tetrahedron<R> {
     /// The plane of each face.
     supports: [Support; 4],
     /// The sign of n·l for each face.
-    pub(super) facing_light: [Ordering; 4],
+    pub(super) facing_light: FaceSigns,
+}
+
+/// The sign of g = n·d of each face, for all lines of one direction d: negative where a line
+/// enters, positive where it leaves, 0 where it runs along.
+pub(super) type FaceSigns = [Ordering; 4];
+
+/// The wall of a half-space that tells where lines of one direction meet a tetrahedron.
+#[derive(Clone, Copy)]
+pub(super) enum Wall {
+    /// The plane of a face: f ≤ 0, or f < 0 where the half-space is not `closed`.
+    Face { face: usize, closed: bool },
+    /// The plane in which lines meet `EDGES[edge]`, with faces i < j: where its edge function is
+    /// not negative or, on the `opposite` side, not positive. If lines enter i and leave j, it is
+    /// not negative where t_i ≤ t_j; if they enter both, where t_i ≥ t_j.
+    Edge { edge: usize, opposite: bool },
+}
+
+impl Wall {
+    /// Whether it belongs to the half-space.
+    pub(super) fn is_closed(self) -> bool {
+        match self {
+            Wall::Face { closed, .. } => closed,
+            Wall::Edge { .. } => true,
+        }
+    }
 }
 
 /// The edge functions of a tetrahedron for all lines of one direction d.
 pub(super) struct EdgeFunctions<R> {
-    /// The sign of g = n·d of each face: negative where a line enters, positive where it leaves, 0
-    /// where it runs along.
-    face_signs: [Ordering; 4],
+    face_signs: FaceSigns,
     /// For each of [`EDGES`], the normal of the plane in which lines meet it: (n_i × n_j) × d
     /// without its positive factor. Edges between two faces that lines leave or run along are
     /// never asked for.
     edge_normals: [Vector<R>; 6],
 }
 
-impl<R> EdgeFunctions<R> {
-    /// The faces that lines enter, in the order of their numbers.
-    pub(super) fn entered(&self) -> impl Iterator<Item = usize> + Clone + use<R> {
-        faces(self, Ordering::Less)
-    }
+/// The faces that lines enter, in the order of their numbers.
+pub(super) fn entered(face_signs: FaceSigns) -> impl Iterator<Item = usize> + Clone {
+    faces(face_signs, Ordering::Less)
+}
 
-    /// All pairs of these faces, the lower number first, each with the index of its edge.
-    fn entered_pairs(&self) -> impl Iterator<Item = ((usize, usize), usize)> {
-        let is_entered = |face: usize| self.face_signs[face].is_lt();
-        let edges = EDGES.iter().enumerate();
-        edges.filter_map(move |(edge, &(i, j, _))| {
-            (is_entered(i) && is_entered(j)).then_some(((i, j), edge))
-        })
-    }
+/// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the wall of
+/// the half-space in which lines enter the first one last.
+pub(super) fn entered_pairs(
+    face_signs: FaceSigns,
+) -> impl Iterator<Item = ((usize, usize), Wall)> + Clone {
+    let is_entered = move |face: usize| face_signs[face].is_lt();
+    let edges = EDGES.iter().enumerate();
+    edges.filter_map(move |(edge, &(i, j, _))| {
+        let opposite = false;
+        (is_entered(i) && is_entered(j)).then_some(((i, j), Wall::Edge { edge, opposite }))
+    })
+}
+
+/// The walls of half-spaces that hold a line exactly if the line meets the solid: it leaves no
+/// face before it enters another, and lies outside of no face that it is parallel to.
+pub(super) fn met(face_signs: FaceSigns) -> impl Iterator<Item = Wall> {
+    let closed = true;
+    let beside = faces(face_signs, Ordering::Equal).map(move |face| Wall::Face { face, closed });
+    let edges = EDGES.iter().enumerate();
+    let pairs = edges.filter_map(move |(edge, &(i, j, _))| {
+        let (sign, other) = (face_signs[i], face_signs[j]);
+        let opposite = sign.is_gt();
+        (sign.is_ne() && other == sign.reverse()).then_some(Wall::Edge { edge, opposite })
+    });
+    beside.chain(pairs)
+}
+
+/// The walls of half-spaces that hold a ray's origin exactly if the ray meets the solid at some
+/// t > 0: its line meets the solid, and every face that it leaves lies ahead.
+pub(super) fn ahead(face_signs: FaceSigns) -> impl Iterator<Item = Wall> {
+    let closed = false;
+    let leaving = faces(face_signs, Ordering::Greater).map(move |face| Wall::Face { face, closed });
+    leaving.chain(met(face_signs))
 }
 
 impl<R: Real> Tetrahedron<R> {
@@ -70,7 +117,7 @@ impl<R: Real> Tetrahedron<R> {
         normals: [Vector<R>; 4],
         right_handed: bool,
         supports: [Support; 4],
-        facing_light: [Ordering; 4],
+        facing_light: FaceSigns,
     ) -> Self {
         Tetrahedron {
             vertices,
@@ -82,7 +129,7 @@ impl<R: Real> Tetrahedron<R> {
     }
 
     /// The sign of n·d for each face.
-    pub(super) fn face_signs(&self, direction: &Direction<R>) -> Result<[Ordering; 4], R::Doubt> {
+    pub(super) fn face_signs(&self, direction: &Direction<R>) -> Result<FaceSigns, R::Doubt> {
         let mut face_signs = [Ordering::Equal; 4];
         for (sign, normal) in face_signs.iter_mut().zip(self.normals) {
             *sign = normal.dot(direction.vector).sign()?;
@@ -94,19 +141,27 @@ impl<R: Real> Tetrahedron<R> {
     pub(super) fn edge_functions(
         &self,
         direction: &Direction<R>,
-        face_signs: [Ordering; 4],
+        face_signs: FaceSigns,
     ) -> EdgeFunctions<R> {
-        let edge_normals = EDGES.map(|(i, j, [from, to])| {
+        let edge_normals = [0, 1, 2, 3, 4, 5].map(|edge| {
+            let (i, j, _) = EDGES[edge];
             if face_signs[i].is_ge() && face_signs[j].is_ge() {
                 return Vector::exact(DVec3::ZERO);
             }
-            let edge = [self.vertices[from], self.vertices[to]];
-            outward(edge_normal(edge, direction.vector), self.right_handed)
+            self.edge_normal(edge, direction.vector)
         });
         EdgeFunctions {
             face_signs,
             edge_normals,
         }
+    }
+
+    /// The normal of the plane in which lines of direction `d` meet an edge, toward where its edge
+    /// function is positive.
+    fn edge_normal(&self, edge: usize, d: Vector<R>) -> Vector<R> {
+        let (.., ends) = EDGES[edge];
+        let ends = ends.map(|vertex| self.vertices[vertex]);
+        outward(edge_normal(ends, d), self.right_handed)
     }
 
     /// The normal of a face, which is that of all its points.
@@ -124,7 +179,44 @@ impl<R: Real> Tetrahedron<R> {
 
     /// The closed half-space of a face that holds the solid.
     pub(super) fn inner_half_space(&self, face: usize) -> HalfSpace<R> {
-        self.inside(face, true)
+        HalfSpace {
+            normal: -self.normals[face],
+            at: self.vertices[FACES[face][0]],
+            closed: true,
+            support: Some(self.supports[face]),
+        }
+    }
+
+    /// The half-space with a wall, for lines of direction `d`.
+    pub(super) fn half_space(&self, wall: Wall, d: Vector<R>) -> HalfSpace<R> {
+        self.half_space_with(wall, |edge| self.edge_normal(edge, d))
+    }
+
+    /// The same, for the direction of these edge functions.
+    fn half_space_in(&self, wall: Wall, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
+        self.half_space_with(wall, |edge| functions.edge_normals[edge])
+    }
+
+    fn half_space_with(
+        &self,
+        wall: Wall,
+        edge_normal: impl FnOnce(usize) -> Vector<R>,
+    ) -> HalfSpace<R> {
+        match wall {
+            Wall::Face { face, .. } => HalfSpace {
+                closed: wall.is_closed(),
+                ..self.inner_half_space(face)
+            },
+            Wall::Edge { edge, opposite } => {
+                let normal = edge_normal(edge);
+                HalfSpace {
+                    normal: if opposite { -normal } else { normal },
+                    at: self.vertices[EDGES[edge].2[0]],
+                    closed: wall.is_closed(),
+                    support: None,
+                }
+            }
+        }
     }
 
     /// Whether n·l ≤ 0 for a face.
@@ -137,71 +229,10 @@ impl<R: Real> Tetrahedron<R> {
         self.normals[face].dot(point - self.vertices[FACES[face][0]])
     }
 
-    /// The half-space of a face, f ≤ 0 or f < 0.
-    fn inside(&self, face: usize, closed: bool) -> HalfSpace<R> {
-        HalfSpace {
-            normal: -self.normals[face],
-            at: self.vertices[FACES[face][0]],
-            closed,
-            support: Some(self.supports[face]),
-        }
-    }
-
-    /// The half-space where the edge function of `EDGES[edge]`, with faces i < j, is not negative.
-    /// If lines enter i and leave j, there t_i ≤ t_j; if they enter both, there t_i ≥ t_j.
-    fn side(&self, edge: usize, functions: &EdgeFunctions<R>) -> HalfSpace<R> {
-        HalfSpace {
-            normal: functions.edge_normals[edge],
-            at: self.vertices[EDGES[edge].2[0]],
-            closed: true,
-            support: None,
-        }
-    }
-
-    /// Half-spaces that hold a line exactly if the line meets the solid: it leaves no face before
-    /// it enters another, and lies outside of no face that it is parallel to.
-    pub(super) fn met<'a>(
-        &'a self,
-        functions: &'a EdgeFunctions<R>,
-    ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
-        let beside = faces(functions, Ordering::Equal).map(|face| self.inside(face, true));
-        let pairs = EDGES.iter().enumerate().filter_map(|(edge, &(i, j, _))| {
-            let side = self.side(edge, functions);
-            match (functions.face_signs[i], functions.face_signs[j]) {
-                (Ordering::Less, Ordering::Greater) => Some(side),
-                (Ordering::Greater, Ordering::Less) => Some(HalfSpace {
-                    normal: -side.normal,
-                    ..side
-                }),
-                _ => None,
-            }
-        });
-        beside.chain(pairs)
-    }
-
-    /// Half-spaces that hold a ray's origin exactly if the ray meets the solid at some t > 0: its
-    /// line meets the solid, and every face that it leaves lies ahead.
-    pub(super) fn ahead<'a>(
-        &'a self,
-        functions: &'a EdgeFunctions<R>,
-    ) -> impl Iterator<Item = HalfSpace<R>> + 'a {
-        let leaving = faces(functions, Ordering::Greater).map(|face| self.inside(face, false));
-        leaving.chain(self.met(functions))
-    }
-
     /// Whether the line meets the solid.
     fn meets(&self, functions: &EdgeFunctions<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
-        all(self.met(functions).map(|half_space| half_space.holds(line)))
-    }
-
-    /// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the
-    /// half-space in which lines enter the first one last.
-    pub(super) fn entered_pairs<'a>(
-        &'a self,
-        functions: &'a EdgeFunctions<R>,
-    ) -> impl Iterator<Item = ((usize, usize), HalfSpace<R>)> + 'a {
-        let pairs = functions.entered_pairs();
-        pairs.map(|(pair, edge)| (pair, self.side(edge, functions)))
+        let walls = met(functions.face_signs);
+        all(walls.map(|wall| self.half_space_in(wall, functions).holds(line)))
     }
 
     /// The face through which a line enters the solid: the last that it enters, and of several at
@@ -211,9 +242,9 @@ impl<R: Real> Tetrahedron<R> {
         functions: &EdgeFunctions<R>,
         line: &Line<R>,
     ) -> Result<usize, R::Doubt> {
-        let first = functions.entered().next().unwrap_or(0);
-        last_entered(first, functions.entered_pairs(), |edge| {
-            self.side(edge, functions).holds(line)
+        let first = entered(functions.face_signs).next().unwrap_or(0);
+        last_entered(first, entered_pairs(functions.face_signs), |wall| {
+            self.half_space_in(wall, functions).holds(line)
         })
     }
 
@@ -245,9 +276,8 @@ impl<R: Real> Tetrahedron<R> {
         functions: &EdgeFunctions<R>,
         ray: &Line<R>,
     ) -> Result<bool, R::Doubt> {
-        all(self
-            .ahead(functions)
-            .map(|half_space| half_space.holds(ray)))
+        let walls = ahead(functions.face_signs);
+        all(walls.map(|wall| self.half_space_in(wall, functions).holds(ray)))
     }
 }
 
@@ -287,7 +317,7 @@ pub(super) fn certain_face_signs(
     vertices: &[DVec3; 4],
     right_handed: bool,
     d: DVec3,
-) -> Option<[Ordering; 4]> {
+) -> Option<FaceSigns> {
     let largest = vertices.iter().map(|vertex| vertex.abs().max_element());
     let m = largest.fold(0.0, f64::max);
     // A component of a normal is at most 8 m², and wrong by at most 32u m²; products and sums round
@@ -310,15 +340,9 @@ pub(super) fn certain_face_signs(
 }
 
 /// The faces whose n·d has this sign.
-fn faces<R>(
-    functions: &EdgeFunctions<R>,
-    face_signs: Ordering,
-) -> impl Iterator<Item = usize> + Clone + use<R> {
-    functions
-        .face_signs
-        .into_iter()
-        .enumerate()
-        .filter_map(move |(face, sign)| (sign == face_signs).then_some(face))
+fn faces(face_signs: FaceSigns, sign: Ordering) -> impl Iterator<Item = usize> + Clone {
+    let faces = face_signs.into_iter().enumerate();
+    faces.filter_map(move |(face, its_sign)| (its_sign == sign).then_some(face))
 }
 
 /// The face that a line enters last, of several at once the lowest. `first` is the lowest that the

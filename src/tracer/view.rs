@@ -18,7 +18,7 @@ use super::sphere::Sphere;
 use super::vector::Vector;
 use super::view_signs::{Halfway, ViewSigns};
 use super::view_space::{eye_direction, reflect};
-use super::view_tetrahedra::{TetrahedraInView, TetrahedronInView};
+use super::view_tetrahedra::{EdgesInView, TetrahedraInView, TetrahedronInView};
 use super::view_transform::ViewTransform;
 use crate::number::{Bounded, Real, any};
 use crate::scene::{Scene, Solid, Support};
@@ -134,6 +134,20 @@ impl<'f, R: Real> View<'f, R> {
         }
     }
 
+    /// The solid of this number, a tetrahedron with its edge functions.
+    #[inline]
+    fn solid_with_edges(
+        &self,
+        number: usize,
+    ) -> Solid<&'f Sphere<R>, (&'f TetrahedronInView<R>, &'f EdgesInView<R>)> {
+        match Solid::index(number, self.spheres.len()) {
+            Solid::Sphere(index) => Solid::Sphere(&self.spheres[index]),
+            Solid::Tetrahedron(index) => {
+                Solid::Tetrahedron((self.tetrahedra.get(index), self.tetrahedra.edges(index)))
+            }
+        }
+    }
+
     /// The first hit of the eye ray of a pixel, or of its continuation from the parameter `from`
     /// on, and the number of the solid; of solids hit at once, the first in the scene.
     pub(super) fn first_hit(
@@ -202,15 +216,15 @@ impl<'f, R: Real> View<'f, R> {
         ahead: bool,
         kinds: SolidKinds,
     ) -> Result<Option<Hit<R>>, R::Doubt> {
-        match self.solid(solid) {
+        match self.solid_with_edges(solid) {
             solid if !kinds.hold(&solid) => Ok(None),
             Solid::Sphere(sphere) if ahead && !sphere.is_ahead(ray)? => Ok(None),
             Solid::Sphere(sphere) => sphere.first_hit(ray),
-            Solid::Tetrahedron(t) => {
-                if ahead && !t.solid.is_ahead(&t.eye_edges, ray)? {
+            Solid::Tetrahedron((t, edges)) => {
+                if ahead && !t.solid.is_ahead(&edges.eye, ray)? {
                     return Ok(None);
                 }
-                t.solid.first_hit(&t.eye_edges, ray)
+                t.solid.first_hit(&edges.eye, ray)
             }
         }
     }
@@ -247,9 +261,9 @@ impl<'f, R: Real> View<'f, R> {
     /// Whether a solid stands between the ray's origin, which is in no solid's interior, and the
     /// light.
     pub(super) fn occludes_light(&self, solid: usize, ray: &Line<R>) -> Result<bool, R::Doubt> {
-        match self.solid(solid) {
+        match self.solid_with_edges(solid) {
             Solid::Sphere(sphere) => sphere.is_ahead(ray),
-            Solid::Tetrahedron(t) => t.solid.is_ahead(&t.light_edges, ray),
+            Solid::Tetrahedron((t, edges)) => t.solid.is_ahead(&edges.light, ray),
         }
     }
 

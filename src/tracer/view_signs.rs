@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use bumpalo::Bump;
 
-use super::tetrahedron::certain_face_signs;
+use super::tetrahedron::{FaceSigns, certain_face_signs};
 use super::vector::Vector;
 use super::view_space::eye_direction;
 use super::view_transform::ViewTransform;
@@ -47,10 +47,6 @@ impl<R: Real> ViewTransform<R> {
         })
     }
 }
-
-/// The sign of n·d for each face: an eye ray enters there (less), runs along the face (equal) or
-/// leaves there (greater).
-pub(super) type FaceSigns = [Ordering; 4];
 
 /// Signs that all pixels of a view share. Once decided, they serve every number.
 #[derive(Clone, Copy)]

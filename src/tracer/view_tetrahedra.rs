@@ -7,8 +7,7 @@ use fearless_simd::Level;
 
 use super::arena::SliceAllocator;
 use super::line::Direction;
-use super::tetrahedron::{EdgeFunctions, Tetrahedron, outward_normals_at_once};
-use super::view_signs::FaceSigns;
+use super::tetrahedron::{EdgeFunctions, FaceSigns, Tetrahedron, outward_normals_at_once};
 use super::view_space::eye_direction;
 use super::view_transform::ViewTransform;
 use crate::number::{Bounded, Real};
@@ -23,13 +22,22 @@ pub(super) struct TetrahedraInView<'f, R> {
     face_signs: &'f [FaceSigns],
     to_light: Direction<R>,
     computed: &'f [OnceLock<TetrahedronInView<R>>],
+    edges: &'f [OnceLock<EdgesInView<R>>],
 }
 
-/// A tetrahedron with its edge functions for eye rays and for rays to the light.
+/// A tetrahedron, and how eye rays run through its faces.
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
-    pub(super) eye_edges: EdgeFunctions<R>,
-    pub(super) light_edges: EdgeFunctions<R>,
+    pub(super) eye_signs: FaceSigns,
+}
+
+/// The edge functions of a tetrahedron: what single lines are tested by. Rows need each of them
+/// once at most, and compute it there.
+pub(super) struct EdgesInView<R> {
+    /// For eye rays.
+    pub(super) eye: EdgeFunctions<R>,
+    /// For rays to the light.
+    pub(super) light: EdgeFunctions<R>,
 }
 
 impl<'f, R: Real> TetrahedraInView<'f, R> {
@@ -49,6 +57,7 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
             face_signs,
             to_light,
             computed: allocator.slice_of(face_signs.iter().map(|_| OnceLock::new())),
+            edges: allocator.slice_of(face_signs.iter().map(|_| OnceLock::new())),
         }
     }
 
@@ -57,24 +66,29 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
         self.computed.len()
     }
 
-    /// All of them, by their indices in the scene.
-    pub(super) fn all(&self) -> impl Iterator<Item = &'f TetrahedronInView<R>> {
-        (0..self.count()).map(|index| self.get(index))
+    /// Computes all that can be asked for.
+    pub(super) fn complete(&self) {
+        for index in 0..self.count() {
+            self.edges(index);
+        }
     }
 
     /// The tetrahedron of this index in the scene.
     pub(super) fn get(&self, index: usize) -> &'f TetrahedronInView<R> {
-        self.computed[index].get_or_init(|| {
-            let solid = self
+        self.computed[index].get_or_init(|| TetrahedronInView {
+            solid: self
                 .transform
-                .tetrahedron(self.scene, index, self.mirror_height);
-            let eye_edges = solid.edge_functions(&eye_direction(), self.face_signs[index]);
-            let light_edges = solid.edge_functions(&self.to_light, solid.facing_light);
-            TetrahedronInView {
-                solid,
-                eye_edges,
-                light_edges,
-            }
+                .tetrahedron(self.scene, index, self.mirror_height),
+            eye_signs: self.face_signs[index],
+        })
+    }
+
+    /// Its edge functions.
+    pub(super) fn edges(&self, index: usize) -> &'f EdgesInView<R> {
+        let TetrahedronInView { solid, eye_signs } = self.get(index);
+        self.edges[index].get_or_init(|| EdgesInView {
+            eye: solid.edge_functions(&eye_direction(), *eye_signs),
+            light: solid.edge_functions(&self.to_light, solid.facing_light),
         })
     }
 }
@@ -87,18 +101,11 @@ impl TetrahedraInView<'_, Bounded> {
             let normals =
                 |vertices: &_, right_handed| outward_normals_at_once(vertices, right_handed, level);
             let (scene, height) = (self.scene, self.mirror_height);
-            let solid = self
-                .transform
-                .tetrahedron_with(scene, index, height, normals);
-            let (eye, signs) = (eye_direction(), self.face_signs[index]);
             TetrahedronInView {
-                eye_edges: solid.edge_functions_at_once(&eye, signs, level),
-                light_edges: solid.edge_functions_at_once(
-                    &self.to_light,
-                    solid.facing_light,
-                    level,
-                ),
-                solid,
+                solid: self
+                    .transform
+                    .tetrahedron_with(scene, index, height, normals),
+                eye_signs: self.face_signs[index],
             }
         });
     }

@@ -1,13 +1,10 @@
 //! The normals of a tetrahedron, four at once, for numbers with bounds.
 
-use std::cmp::Ordering;
-
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::{EdgeFunctions, Tetrahedron, edge_normal, outward, outward_normals, plane_normal};
+use super::{Tetrahedron, Wall, edge_normal, outward, outward_normals, plane_normal};
 use crate::number::{Bounded, FourBounded};
 use crate::scene::{EDGES, FACES};
-use crate::tracer::line::Direction;
 use crate::tracer::vector::Vector;
 
 /// As [`outward_normals`].
@@ -38,46 +35,56 @@ fn outward_normals_with<S: Simd>(
 }
 
 impl Tetrahedron<Bounded> {
-    /// As [`Tetrahedron::edge_functions`].
-    pub(in crate::tracer) fn edge_functions_at_once(
-        &self,
-        direction: &Direction<Bounded>,
-        face_signs: [Ordering; 4],
-        level: Level,
-    ) -> EdgeFunctions<Bounded> {
-        if any_exact(&self.vertices) {
-            return self.edge_functions(direction, face_signs);
-        }
-        EdgeFunctions {
-            face_signs,
-            edge_normals: dispatch!(level, simd => self.edge_normals_with(simd, direction.vector)),
-        }
-    }
-
+    /// The normals of half-spaces with these walls, and a point of each wall, as
+    /// [`Tetrahedron::half_space`] has them; not where [`Tetrahedron::may_be_exact`] is true.
     #[inline(always)]
-    fn edge_normals_with<S: Simd>(&self, simd: S, d: Vector<Bounded>) -> [Vector<Bounded>; 6] {
-        let d = Vector::splat(simd, d);
-        let [first, second, third, fourth, ..] = EDGES;
-        let [.., fifth, sixth] = EDGES;
-        let [a, b, c, e] = self.edge_normals_of(simd, [first, second, third, fourth], d);
-        // Two are computed twice, and are the same.
-        let [_, _, f, g] = self.edge_normals_of(simd, [third, fourth, fifth, sixth], d);
-        [a, b, c, e, f, g]
-    }
-
-    /// The normals of four edges.
-    #[inline(always)]
-    fn edge_normals_of<S: Simd>(
+    pub(in crate::tracer) fn half_spaces_at_once<S: Simd>(
         &self,
         simd: S,
-        [a, b, c, e]: [(usize, usize, [usize; 2]); 4],
-        d: Vector<FourBounded<S>>,
-    ) -> [Vector<Bounded>; 4] {
-        let edges = [
-            chosen(simd, &self.vertices, [a.2[0], b.2[0], c.2[0], e.2[0]]),
-            chosen(simd, &self.vertices, [a.2[1], b.2[1], c.2[1], e.2[1]]),
+        walls: &[Wall; 4],
+        d: Vector<Bounded>,
+    ) -> [Vector<FourBounded<S>>; 2] {
+        let (mut from, mut to, mut at) = ([0; 4], [0; 4], [0; 4]);
+        let mut any_face = false;
+        for i in 0..4 {
+            match walls[i] {
+                Wall::Face { face, .. } => {
+                    any_face = true;
+                    at[i] = FACES[face][0];
+                }
+                Wall::Edge { edge, opposite } => {
+                    let (.., [first, last]) = EDGES[edge];
+                    // The normal of a reversed edge is the opposite one.
+                    let is_reversed = opposite == self.right_handed;
+                    (from[i], to[i]) = if is_reversed {
+                        (last, first)
+                    } else {
+                        (first, last)
+                    };
+                    at[i] = first;
+                }
+            }
+        }
+        let ends = [
+            chosen(simd, &self.vertices, from),
+            chosen(simd, &self.vertices, to),
         ];
-        Vector::apart(outward(edge_normal(edges, d), self.right_handed))
+        let mut normals = edge_normal(ends, Vector::splat(simd, d));
+        if any_face {
+            let mut each = normals.apart();
+            for i in 0..4 {
+                if let Wall::Face { face, .. } = walls[i] {
+                    each[i] = -self.normals[face];
+                }
+            }
+            normals = Vector::together(simd, each);
+        }
+        [normals, chosen(simd, &self.vertices, at)]
+    }
+
+    /// Whether products of its vertices may be exact, which is known only one by one.
+    pub(in crate::tracer) fn may_be_exact(&self) -> bool {
+        any_exact(&self.vertices)
     }
 }
 
@@ -96,4 +103,71 @@ fn chosen<S: Simd>(
     [a, b, c, d]: [usize; 4],
 ) -> Vector<FourBounded<S>> {
     Vector::together(simd, [vertices[a], vertices[b], vertices[c], vertices[d]])
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::number::Real as _;
+    use crate::random::Random;
+    use crate::scene::Scene;
+    use crate::tracer::tetrahedron::ahead;
+    use crate::tracer::view_space::eye_direction;
+    use crate::tracer::view_transform::ViewTransform;
+
+    fn bits(v: Vector<Bounded>) -> [(u64, u64); 3] {
+        [v.x, v.y, v.z].map(|x| (x.value().to_bits(), x.error().to_bits()))
+    }
+
+    #[test]
+    fn four_half_spaces_at_once_have_the_bits_of_each_by_itself() {
+        let mut random = Random::new();
+        let (mut faces, mut edges, mut hands) = (0, 0, [0; 2]);
+        for round in 0..100 {
+            let mut number = || 2.0 * random.fraction() - 1.0;
+            let vertices = [(); 4].map(|()| [number(), number(), number()]);
+            let text =
+                format!("[[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n");
+            let scene = Scene::from_toml(&text).unwrap();
+            let (sin, cos) = Bounded::sin_cos(number());
+            let transform = ViewTransform::new(sin, cos, 500);
+            let mirror = (round % 2 == 0).then(|| Bounded::exact(-0.25));
+            let solid = transform.tetrahedron(&scene, 0, mirror);
+            assert!(!solid.may_be_exact());
+            hands[usize::from(solid.right_handed)] += 1;
+            let eye = eye_direction::<Bounded>();
+            let light = Vector::exact(DVec3::new(number(), number(), number()));
+            let lines = [
+                (eye.vector, solid.face_signs(&eye).unwrap()),
+                (light, solid.facing_light),
+            ];
+            for (d, walls) in lines.map(|(d, signs)| (d, ahead(signs).collect::<Vec<Wall>>())) {
+                for four in walls.windows(4) {
+                    let four: &[Wall; 4] = four.try_into().unwrap();
+                    let is_face = |wall: &&Wall| matches!(wall, Wall::Face { .. });
+                    let count = four.iter().filter(is_face).count();
+                    (faces, edges) = (faces + count, edges + 4 - count);
+                    for level in [Level::new(), Level::baseline(), Level::fallback()] {
+                        dispatch!(level, simd => {
+                            let [normals, points] = solid.half_spaces_at_once(simd, four, d);
+                            let (normals, points) = (normals.apart(), points.apart());
+                            for (i, wall) in four.iter().enumerate() {
+                                let expected = solid.half_space(*wall, d);
+                                assert_eq!(bits(normals[i]), bits(expected.normal));
+                                assert_eq!(bits(points[i]), bits(expected.at));
+                            }
+                        });
+                    }
+                }
+            }
+        }
+        let counts = (faces, edges, hands);
+        assert!(
+            faces > 400 && edges > 400 && hands.iter().all(|&n| n > 20),
+            "{counts:?}"
+        );
+    }
 }

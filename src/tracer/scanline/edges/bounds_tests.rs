@@ -19,6 +19,8 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, Rectangle};
 use crate::tracer::scanline::prepare::surface_plane::{SurfaceDepth, surface_plane};
+use crate::tracer::tetrahedron::{entered, met};
+use crate::tracer::view_space::eye_direction;
 
 const SIZE: u32 = 500;
 
@@ -111,17 +113,12 @@ fn check_tetrahedra(
     grid: Grid,
     shares: &mut Shares,
 ) {
-    for (t, exact) in bounded
-        .view
-        .tetrahedra
-        .all()
-        .zip(truth.view.tetrahedra.all())
-    {
-        let half_spaces = t
-            .solid
-            .met(&t.eye_edges)
-            .zip(exact.solid.met(&exact.eye_edges));
-        for (half_space, exact) in half_spaces {
+    let (tetrahedra, exact) = (&bounded.view.tetrahedra, &truth.view.tetrahedra);
+    for index in 0..tetrahedra.count() {
+        let (t, exact) = (tetrahedra.get(index), exact.get(index));
+        for wall in met(t.eye_signs) {
+            let half_space = t.solid.half_space(wall, eye_direction().vector);
+            let exact = exact.solid.half_space(wall, eye_direction().vector);
             let half_plane = HalfPlane::of(&half_space, None, grid);
             for row in (0..SIZE).step_by(7) {
                 let y = grid.coordinate(row);
@@ -144,7 +141,7 @@ fn check_tetrahedra(
                 }
             }
         }
-        for face in t.eye_edges.entered() {
+        for face in entered(t.eye_signs) {
             let depth = FaceDepth::new(&t.solid.inner_half_space(face), grid);
             let plane = exact.solid.inner_half_space(face);
             for (column, row) in (0..SIZE)

@@ -11,6 +11,7 @@ use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
+use crate::tracer::tetrahedron::{Tetrahedron, Wall};
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{PIXEL, number_at};
 
@@ -165,31 +166,36 @@ impl HalfPlane {
         HalfPlane::new(constant, per_x, per_y, closed, grid)
     }
 
-    /// The same for each of several half-spaces, four at once.
+    /// The same for the half-spaces with these walls, four at once: for lines of one direction
+    /// and the tetrahedron.
     pub(crate) fn all_of<'f>(
-        half_spaces: impl Iterator<Item = HalfSpace<Bounded>>,
+        (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
+        walls: impl Iterator<Item = Wall>,
         plane: Option<&PixelPlane>,
         (grid, level): (Grid, Level),
         arena: &'f Bump,
     ) -> &'f [HalfPlane] {
         let mut all = Growing::new_in(arena);
-        let mut add = |four: &[HalfSpace<Bounded>; 4], count: usize| {
-            let is_special = |half_space: &HalfSpace<Bounded>| {
-                // If all of a point is exact, so may products be, which is known only one by one.
-                half_space.at.x.error() == 0.0 || is_border(half_space, plane)
+        let may_be_exact = tetrahedron.may_be_exact();
+        let half_space = |wall: Wall| tetrahedron.half_space(wall, direction);
+        let mut add = |four: &[Wall; 4], count: usize| {
+            let is_special = |wall: &Wall| {
+                matches!(wall, Wall::Face { .. }) && is_border(&half_space(*wall), plane)
             };
-            if four.iter().any(is_special) {
-                let four = four[..count].iter();
-                all.extend(four.map(|half_space| HalfPlane::of(half_space, plane, grid)));
+            if may_be_exact || four.iter().any(is_special) {
+                let each = four[..count].iter().map(|wall| half_space(*wall));
+                all.extend(each.map(|half_space| HalfPlane::of(&half_space, plane, grid)));
             } else {
-                let four = dispatch!(level, simd => HalfPlane::four_of(simd, four, plane, grid));
+                let lines = (tetrahedron, direction);
+                let four =
+                    dispatch!(level, simd => HalfPlane::four_of(simd, lines, four, plane, grid));
                 all.extend_from_slice_copy(&four[..count]);
             }
         };
         let mut waiting = None;
-        half_spaces.for_each(|half_space| {
-            let (four, count) = waiting.get_or_insert(([half_space; 4], 0));
-            four[*count] = half_space;
+        walls.for_each(|wall| {
+            let (four, count) = waiting.get_or_insert(([wall; 4], 0));
+            four[*count] = wall;
             *count += 1;
             if *count == 4 {
                 add(four, 4);
@@ -202,18 +208,17 @@ impl HalfPlane {
         all.into_bump_slice()
     }
 
-    /// The same for four half-spaces whose points are not exact, and whose borders do not hold the
-    /// plane.
+    /// The same for four walls that do not hold the plane, of a tetrahedron without numbers that
+    /// may be exact.
     #[inline(always)]
     fn four_of<S: Simd>(
         simd: S,
-        half_spaces: &[HalfSpace<Bounded>; 4],
+        (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
+        walls: &[Wall; 4],
         plane: Option<&PixelPlane>,
         grid: Grid,
     ) -> [HalfPlane; 4] {
-        let [a, b, c, d] = half_spaces;
-        let n = Vector::together(simd, [a.normal, b.normal, c.normal, d.normal]);
-        let at = Vector::together(simd, [a.at, b.at, c.at, d.at]);
+        let [n, at] = tetrahedron.half_spaces_at_once(simd, walls, direction);
         #[allow(
             clippy::manual_map,
             reason = "a closure is compiled without vector instructions"
@@ -227,8 +232,8 @@ impl HalfPlane {
         };
         let origin = Vector::splat(simd, origin(plane, grid)) - at;
         let mut half_planes = HalfPlane::four(simd, height(n, origin, changes), grid);
-        for (half_plane, half_space) in half_planes.iter_mut().zip(half_spaces) {
-            half_plane.closed = half_space.closed;
+        for (half_plane, wall) in half_planes.iter_mut().zip(walls) {
+            half_plane.closed = wall.is_closed();
         }
         half_planes
     }

@@ -26,8 +26,10 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{HitBounds, SphereConstants};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
+use crate::tracer::tetrahedron::{entered, entered_pairs};
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
+use crate::tracer::view_space::eye_direction;
 use crate::tracer::view_tetrahedra::TetrahedronInView;
 
 /// Prepares the solids of these outlines, and adds their regions and paints. `view` is that of
@@ -207,7 +209,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         parts: &mut Builder<'f, '_>,
     ) -> FrontFaces<'f> {
         let (arena, grid) = (parts.arena, parts.grid);
-        let faces = t.eye_edges.entered();
+        let faces = entered(t.eye_signs);
         let mut front_faces = Growing::new_in(arena);
         for face in faces.clone() {
             let mut shadows = Growing::new_in(arena);
@@ -230,19 +232,22 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             });
         }
         let index = |face: usize| faces.clone().position(|other| other == face);
-        let firsts = t.solid.entered_pairs(&t.eye_edges).map(|(_, first)| first);
-        let creases = HalfPlane::all_of(firsts, None, (grid, parts.level), arena);
+        let pairs = entered_pairs(t.eye_signs);
+        let lines = (&t.solid, eye_direction().vector);
+        let firsts = pairs.clone().map(|(_, first)| first);
+        let creases = HalfPlane::all_of(lines, firsts, None, (grid, parts.level), arena);
         // A crease matters within the solid only: elsewhere a level one would cross many edges.
-        let pairs = t.solid.entered_pairs(&t.eye_edges).zip(creases.chunks(1));
-        let pairs = pairs.filter_map(|(((i, j), _), crease)| {
-            let crease = Region::new(crease, None, grid)
-                .within(solid.rows)
-                .clipped(solid.outline);
-            Some(Pair {
-                front_faces: (index(i)?, index(j)?),
-                crease: parts.edge_table.add(crease, RegionKind::Crease),
-            })
-        });
+        let pairs = pairs
+            .zip(creases.chunks(1))
+            .filter_map(|(((i, j), _), crease)| {
+                let crease = Region::new(crease, None, grid)
+                    .within(solid.rows)
+                    .clipped(solid.outline);
+                Some(Pair {
+                    front_faces: (index(i)?, index(j)?),
+                    crease: parts.edge_table.add(crease, RegionKind::Crease),
+                })
+            });
         FrontFaces {
             pairs: collect(arena, pairs),
             all: front_faces.into_bump_slice(),

@@ -26,6 +26,7 @@ use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::prepare::shadows::shadows_on_face;
 use crate::tracer::scanline::row_edges::RowEdges;
 use crate::tracer::scanline::write::paint::AllPaints;
+use crate::tracer::tetrahedron::entered;
 
 /// In a solid of more rows, each shadow's own rows are found.
 const FEW_ROWS: u32 = 4 * ROWS as u32;
@@ -92,7 +93,7 @@ impl<'f> LateFaces<'f> {
             casters
                 .filter(|caster| matches!(view.solid(usize::from(**caster)), Solid::Tetrahedron(_)))
         };
-        let mut faces = self.tetrahedron.eye_edges.entered();
+        let mut faces = entered(self.tetrahedron.eye_signs);
         let mut casters = [(); 4].map(|()| faces.next().map(|face| (face, tetrahedra(face))));
         let (from, to) = self.outlined.rows;
         let is_high = to > from + FEW_ROWS;

@@ -16,7 +16,9 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth};
+use crate::tracer::tetrahedron::{entered, met};
 use crate::tracer::view::{SolidKinds, View};
+use crate::tracer::view_space::eye_direction;
 
 /// The outline of a solid, and its depth.
 pub(crate) struct Outlined<'f> {
@@ -191,9 +193,10 @@ impl<'v, 'f> Outlines<'v, 'f> {
                 }
             }
             Solid::Tetrahedron(t) => {
-                let met = t.solid.met(&t.eye_edges);
-                let met = HalfPlane::all_of(met, None, (grid, self.level), arena);
-                let faces = t.eye_edges.entered();
+                let lines = (&t.solid, eye_direction().vector);
+                let met = met(t.eye_signs);
+                let met = HalfPlane::all_of(lines, met, None, (grid, self.level), arena);
+                let faces = entered(t.eye_signs);
                 let depths =
                     faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(face), grid));
                 Outlined {

@@ -20,6 +20,7 @@ use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::sphere::{HitBounds, LinearForm};
 use crate::tracer::surface::Surface;
+use crate::tracer::tetrahedron::{ahead, met};
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
@@ -127,11 +128,12 @@ pub(crate) fn shadows_on<'f>(
                 Region::new(collect(arena, before), Some(arena.alloc(ellipse)), grid)
             }
             Solid::Tetrahedron(t) => {
-                let (plane, screen) = (Some(plane), (grid, level));
+                let lines = (&t.solid, to_light.vector);
+                let (plane, screen, signs) = (Some(plane), (grid, level), t.solid.facing_light);
                 let planes = if is_ahead {
-                    HalfPlane::all_of(t.solid.met(&t.light_edges), plane, screen, arena)
+                    HalfPlane::all_of(lines, met(signs), plane, screen, arena)
                 } else {
-                    HalfPlane::all_of(t.solid.ahead(&t.light_edges), plane, screen, arena)
+                    HalfPlane::all_of(lines, ahead(signs), plane, screen, arena)
                 };
                 Region::new(planes, None, grid)
             }
@@ -177,8 +179,9 @@ pub(crate) fn casters_on<'f>(
                 Some(Caster::Sphere(cylinder))
             }
             Solid::Tetrahedron(t) => {
-                let ahead = t.solid.ahead(&t.light_edges);
-                let forms = ahead.map(|half_space| bounds.inside(&half_space, lighting));
+                let to_light = view.shading.to_light.vector;
+                let forms = ahead(t.solid.facing_light)
+                    .map(|wall| bounds.inside(&t.solid.half_space(wall, to_light), lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }
