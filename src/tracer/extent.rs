@@ -1,6 +1,8 @@
 //! Bounding rectangles on the screen: most pixels need not be tested against most solids.
 
-use super::arena::{Arena, OnDemand, collect};
+use bumpalo::Bump;
+
+use super::arena::{Arena, OnDemand, bucketed, collect};
 use super::surface_casters::SurfaceCasterLookup;
 use super::tiles::Tiles;
 use super::vector::Vector;
@@ -34,10 +36,18 @@ const FEW: u32 = 16;
 /// The most solids at a pixel that are sorted without tiles.
 const MOST: usize = 32;
 
+/// The rows of the bands that solids are put in the order of: about as many as are traced at a time.
+const BAND: usize = 8;
+
 /// The extents of all solids.
 #[derive(Clone, Copy)]
 pub(super) struct ExtentsOfSolids<'f> {
     all: &'f [SolidExtent],
+    /// The numbers of all solids in the order of the bands of rows that they begin in: what a band
+    /// shows lies side by side in memory if it is prepared, and stored, in this order.
+    pub(super) in_bands: &'f [u16],
+    /// By the index of a tetrahedron, its place among the tetrahedra in this order.
+    pub(super) places: &'f [u16],
     /// N.
     size: u32,
     /// Made after [`FEW`] questions: rows leave few pixels in doubt, and mostly none.
@@ -118,6 +128,29 @@ fn nearest_first(
         sorted[at..count].rotate_right(1);
     }
     Some((sorted, count))
+}
+
+/// The numbers of solids in the order of the bands that they begin in, and the places of those from
+/// `first` on among them.
+fn order<'f>(
+    all: &[SolidExtent],
+    first: usize,
+    size: u32,
+    arena: &'f Bump,
+) -> (&'f [u16], &'f [u16]) {
+    let band = |solid: &SolidExtent| solid.extent.rows.0 as usize / BAND;
+    let by_band = all.iter().enumerate();
+    let by_band = by_band.map(|(number, solid)| (band(solid), number as u16));
+    // An extent without rows may begin above the picture.
+    let bands = size as usize / BAND + 1;
+    let (in_bands, _) = bucketed(arena, bands, by_band);
+    let places = arena.alloc_slice_fill_copy(all.len() - first, 0);
+    let indices = in_bands.iter().map(|number| usize::from(*number));
+    let indices = indices.filter_map(|number| number.checked_sub(first));
+    for (place, index) in (0..).zip(indices) {
+        places[index] = place;
+    }
+    (in_bands, places)
 }
 
 /// Finds the tiles that solids reach.
@@ -224,8 +257,12 @@ impl<'f> Extents<'f> {
                     },
                 }
             });
+            let all = collect(&arena.setup, spheres.chain(tetrahedra));
+            let (in_bands, places) = order(all, scene.spheres().len(), size, &arena.setup);
             ExtentsOfSolids {
-                all: collect(&arena.setup, spheres.chain(tetrahedra)),
+                all,
+                in_bands,
+                places,
                 size,
                 tiles: &arena.tiles[usize::from(mirror_height.is_some())],
             }
@@ -305,12 +342,29 @@ mod tests {
     }
 
     #[test]
+    fn solids_are_in_the_order_of_bands() {
+        let (arena, first) = (Bump::new(), 100);
+        let mut all = random_extents(&mut Random::new(), 300);
+        all[7].extent.rows = (SIZE, SIZE);
+        let (in_bands, places) = order(&all, first, SIZE, &arena);
+        let band = |number: u16| all[usize::from(number)].extent.rows.0 as usize / BAND;
+        assert!(in_bands.is_sorted_by_key(|number| (band(*number), *number)));
+        assert_eq!(in_bands.len(), all.len());
+        let in_places = |number: &u16| usize::from(*number) >= first;
+        for (place, number) in in_bands.iter().copied().filter(in_places).enumerate() {
+            assert_eq!(usize::from(places[usize::from(number) - first]), place);
+        }
+    }
+
+    #[test]
     fn the_first_pixels_find_the_same_solids_as_all_others() {
         let all = random_extents(&mut Random::new(), 300);
         for column in 0..SIZE {
             let tiles = OnDemand::default();
             let extents = ExtentsOfSolids {
                 all: &all,
+                in_bands: &[],
+                places: &[],
                 size: SIZE,
                 tiles: &tiles,
             };

@@ -217,11 +217,15 @@ impl<'f, R: Real> Picture<'f, R> {
         seen: Seen,
         normal: Option<&Normal<R>>,
     ) -> Result<Vector<R>, R::Doubt> {
-        let color = self.solid_color(usize::from(seen.solid));
+        let solid = view.solid(seen.solid.into());
+        let color = match solid {
+            Solid::Sphere(_) => self.solid_color(usize::from(seen.solid)),
+            Solid::Tetrahedron(t) => Vector::exact(t.color),
+        };
         if self.stage < Stage::Shading {
             return Ok(color);
         }
-        let face = match (view.solid(seen.solid.into()), seen.face) {
+        let face = match (solid, seen.face) {
             (Solid::Tetrahedron(t), Some(face)) if !seen.in_shadow => {
                 Some(t.solid.normal(face.into()))
             }

@@ -106,7 +106,6 @@ impl<'f, R: Real> View<'f, R> {
                 support,
             });
         View {
-            extents,
             spheres: allocator.slice_of(spheres),
             tetrahedra: TetrahedraInView::new(
                 scene,
@@ -114,9 +113,11 @@ impl<'f, R: Real> View<'f, R> {
                 mirror_height,
                 signs.face_signs,
                 to_light,
+                &extents,
                 allocator,
             ),
             shading: Shading::new(scene, to_light, halfway),
+            extents,
         }
     }
 

@@ -4,8 +4,10 @@
 use std::sync::OnceLock;
 
 use fearless_simd::Level;
+use glam::DVec3;
 
 use super::arena::SliceAllocator;
+use super::extent::ExtentsOfSolids;
 use super::line::Direction;
 use super::tetrahedron::{EdgeFunctions, FaceSigns, Tetrahedron, outward_normals_at_once};
 use super::view_space::eye_direction;
@@ -21,6 +23,8 @@ pub(super) struct TetrahedraInView<'f, R> {
     mirror_height: Option<R>,
     face_signs: &'f [FaceSigns],
     to_light: Direction<R>,
+    /// By the index of a tetrahedron, its place in what follows: rows need one after the other.
+    places: &'f [u16],
     computed: &'f [OnceLock<TetrahedronInView<R>>],
     edges: &'f [OnceLock<EdgesInView<R>>],
 }
@@ -29,6 +33,8 @@ pub(super) struct TetrahedraInView<'f, R> {
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
     pub(super) eye_signs: FaceSigns,
+    /// c, at hand.
+    pub(super) color: DVec3,
 }
 
 /// The edge functions of a tetrahedron: what single lines are tested by. Rows need each of them
@@ -48,6 +54,7 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
         mirror_height: Option<R>,
         face_signs: &'f [FaceSigns],
         to_light: Direction<R>,
+        extents: &ExtentsOfSolids<'f>,
         allocator: &impl SliceAllocator<'f>,
     ) -> Self {
         TetrahedraInView {
@@ -56,6 +63,7 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
             mirror_height,
             face_signs,
             to_light,
+            places: extents.places,
             computed: allocator.slice_of(face_signs.iter().map(|_| OnceLock::new())),
             edges: allocator.slice_of(face_signs.iter().map(|_| OnceLock::new())),
         }
@@ -75,21 +83,33 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
 
     /// The tetrahedron of this index in the scene.
     pub(super) fn get(&self, index: usize) -> &'f TetrahedronInView<R> {
-        self.computed[index].get_or_init(|| TetrahedronInView {
-            solid: self
-                .transform
-                .tetrahedron(self.scene, index, self.mirror_height),
-            eye_signs: self.face_signs[index],
+        self.computed[self.place(index)].get_or_init(|| {
+            let (scene, height) = (self.scene, self.mirror_height);
+            self.in_view(index, self.transform.tetrahedron(scene, index, height))
         })
     }
 
     /// Its edge functions.
     pub(super) fn edges(&self, index: usize) -> &'f EdgesInView<R> {
-        let TetrahedronInView { solid, eye_signs } = self.get(index);
-        self.edges[index].get_or_init(|| EdgesInView {
+        let TetrahedronInView {
+            solid, eye_signs, ..
+        } = self.get(index);
+        self.edges[self.place(index)].get_or_init(|| EdgesInView {
             eye: solid.edge_functions(&eye_direction(), *eye_signs),
             light: solid.edge_functions(&self.to_light, solid.facing_light),
         })
+    }
+
+    fn place(&self, index: usize) -> usize {
+        usize::from(self.places[index])
+    }
+
+    fn in_view(&self, index: usize, solid: Tetrahedron<R>) -> TetrahedronInView<R> {
+        TetrahedronInView {
+            solid,
+            eye_signs: self.face_signs[index],
+            color: self.scene.tetrahedra()[index].color,
+        }
     }
 }
 
@@ -97,16 +117,15 @@ impl TetrahedraInView<'_, Bounded> {
     /// Computes the tetrahedron of this index, unless it is computed: faster than
     /// [`TetrahedraInView::get`] does.
     pub(super) fn prepare(&self, index: usize, level: Level) {
-        self.computed[index].get_or_init(|| {
+        self.computed[self.place(index)].get_or_init(|| {
             let normals =
                 |vertices: &_, right_handed| outward_normals_at_once(vertices, right_handed, level);
             let (scene, height) = (self.scene, self.mirror_height);
-            TetrahedronInView {
-                solid: self
-                    .transform
-                    .tetrahedron_with(scene, index, height, normals),
-                eye_signs: self.face_signs[index],
-            }
+            let transform = &self.transform;
+            self.in_view(
+                index,
+                transform.tetrahedron_with(scene, index, height, normals),
+            )
         });
     }
 }

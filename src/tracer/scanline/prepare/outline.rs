@@ -7,13 +7,13 @@ use fearless_simd::Level;
 use crate::number::Bounded;
 use crate::scene::{Scene, Side, Solid};
 use crate::stage::Stage;
-use crate::tracer::arena::{bucketed, collect};
+use crate::tracer::arena::collect;
 use crate::tracer::extent::Extent;
 use crate::tracer::pixel::Picture;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
-use crate::tracer::scanline::grid::{Grid, ROWS};
+use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth};
 use crate::tracer::tetrahedron::{entered, met};
@@ -90,15 +90,8 @@ impl<'v, 'f> Outlines<'v, 'f> {
                 && !(mirrored && facts.sides[number] == Side::Below)
                 && within.is_none_or(|within| extent.meets(within))
         };
-        let seen = collect(arena, (0..view.solid_count()).filter(is_seen));
-        // What a band of rows shows lies side by side in memory if it is prepared in the order of
-        // bands.
-        let by_band = seen.iter().map(|&number| {
-            let (first, _) = view.extents.of(number).rows;
-            (first as usize / ROWS, number)
-        });
-        let bands = (grid.size as usize).div_ceil(ROWS);
-        let (numbers, _) = bucketed(arena, bands + 1, by_band);
+        let numbers = view.extents.in_bands.iter().copied().map(usize::from);
+        let numbers = collect(arena, numbers.filter(is_seen));
         Outlines {
             mirrored,
             view,
@@ -108,7 +101,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
             arena,
             rows: within.map_or((0, grid.size), |within| within.rows),
             numbers,
-            area: seen
+            area: numbers
                 .iter()
                 .map(|&number| view.extents.of(number).area())
                 .sum(),
