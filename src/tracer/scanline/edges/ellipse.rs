@@ -122,6 +122,9 @@ impl ParallelLines {
 }
 
 impl Ellipse {
+    // Inlined, so that it is written where it is kept: the processor would wait long before it
+    // copies what was just written.
+    #[inline(always)]
     fn new(
         middle: (Bounded, Bounded),
         m: (Bounded, Bounded),

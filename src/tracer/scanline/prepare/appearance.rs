@@ -45,13 +45,17 @@ pub(crate) fn prepare_solids<'f>(
     let appearances = Appearances::new(picture, view, mirrored);
     let sides = numbers.iter().map(|&number| outlines.side(number));
     let sides = collect(arena, sides);
-    // The colours lie in another order: in a loop of its own, the processor reads several at once.
+    // Colours and casters lie in another order: in loops of their own, the processor reads several
+    // at once.
     let colors = numbers.iter().map(|&number| picture.solid_color(number));
     let colors = collect(arena, colors);
+    let casters = numbers.iter().map(|&number| appearances.casters(number));
+    let casters = collect(arena, casters);
     let is_late = appearances.has_shadows && outlines.face_shadows() >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
-    for (index, solid) in (0..).map(SolidIndex).zip(outlines.into_all()) {
+    outlines.for_each(|solid| {
+        let index = depths.len();
         let appearance = match view.solid(solid.number) {
             Solid::Tetrahedron(t) if is_late => {
                 parts.late_faces += 1;
@@ -63,8 +67,9 @@ pub(crate) fn prepare_solids<'f>(
                     t,
                 )))
             }
-            _ => appearances.of(&solid, colors[index.0 as usize], parts),
+            _ => appearances.of(&solid, (colors[index], casters[index]), parts),
         };
+        let index = SolidIndex(index as u32);
         let kind = if mirrored {
             RegionKind::Mirrored(index)
         } else {
@@ -73,7 +78,7 @@ pub(crate) fn prepare_solids<'f>(
         parts.edge_table.add(solid.outline, kind);
         all_appearances.push(appearance);
         depths.push(solid.depth);
-    }
+    });
     PreparedSolids {
         mirrored,
         numbers,
@@ -112,16 +117,26 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         }
     }
 
-    /// The appearance of a solid, whose regions and paints are added.
+    /// The casters of a solid, if it is a sphere and the stage has shadows.
+    fn casters(&self, number: usize) -> &'s [u16] {
+        if self.has_shadows {
+            self.picture.scene.facts().casters.on(number, None)
+        } else {
+            &[]
+        }
+    }
+
+    /// The appearance of a solid of this colour and with these casters, whose regions and paints
+    /// are added.
     fn of(
         &self,
         solid: &Outlined<'f>,
-        color: Vector<Bounded>,
+        (color, casters): (Vector<Bounded>, &[u16]),
         parts: &mut Builder<'f, '_>,
     ) -> Appearance<'f> {
         match (self.view.solid(solid.number), solid.outline.ellipse()) {
             (Solid::Sphere(sphere), Some(outline)) => {
-                self.sphere(solid.number, sphere, (outline, color), parts)
+                self.sphere(solid.number, sphere, (outline, color, casters), parts)
             }
             // The outline of a sphere is an ellipse.
             (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
@@ -148,7 +163,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         &self,
         number: usize,
         sphere: &Sphere<Bounded>,
-        (outline, color): (&Ellipse, Vector<Bounded>),
+        (outline, color, casters): (&Ellipse, Vector<Bounded>, &[u16]),
         parts: &mut Builder<'f, '_>,
     ) -> Appearance<'f> {
         let arena = parts.arena;
@@ -165,15 +180,13 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             .lighting
             .get_or_init(|| arena.alloc(Lighting::new(&self.view.shading)));
         let bounds = HitBounds::new(sphere, outline);
-        let mut casters = Growing::new_in(arena);
+        let mut all_casters = Growing::new_in(arena);
         if self.has_shadows {
-            let facts = self.picture.scene.facts();
-            let solids = facts.casters.on(number, None);
             let surface = self.surface.on_sphere(number, &bounds, lighting, arena);
             // Most spheres have one caster or none.
-            casters.reserve_exact(solids.len() + surface.iter().len());
-            let solids = casters_on(&bounds, number, self.view, lighting, solids, arena);
-            casters.extend(solids.chain(surface));
+            all_casters.reserve_exact(casters.len() + surface.iter().len());
+            let solids = casters_on(&bounds, number, self.view, lighting, casters, arena);
+            all_casters.extend(solids.chain(surface));
         }
         let in_shadow = paint(self.has_shadows);
         parts.shaded_spheres += 1;
@@ -187,7 +200,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
                 color,
                 self.has_shadows,
             ),
-            casters: casters.into_bump_slice(),
+            casters: all_casters.into_bump_slice(),
             in_light: self.decision(number, None, false),
             in_shadow,
         }))

@@ -151,13 +151,18 @@ impl<'v, 'f> Outlines<'v, 'f> {
         self.culled = Some(all);
     }
 
-    /// The outlines of the solids of `numbers`. Those that are not culled are made one by one, so
-    /// that each is used while the processor has it at hand.
-    pub(crate) fn into_all(mut self) -> impl Iterator<Item = Outlined<'f>> {
-        let culled = self.culled.take();
-        let others = if culled.is_some() { &[] } else { self.numbers };
-        let others = others.iter().map(move |&number| self.outline(number));
-        culled.into_iter().flatten().chain(others)
+    /// Calls `each` with the outlines of the solids of `numbers`. Those that are not culled are made
+    /// one by one, so that each is used while the processor has it at hand; and are not copied
+    /// before that, because the processor would wait until they are written.
+    pub(crate) fn for_each(mut self, mut each: impl FnMut(Outlined<'f>)) {
+        match self.culled.take() {
+            Some(culled) => culled.into_iter().for_each(each),
+            None => {
+                for &number in self.numbers {
+                    each(self.outline(number));
+                }
+            }
+        }
     }
 
     /// The side of the surface that a solid is on.
@@ -177,8 +182,8 @@ impl<'v, 'f> Outlines<'v, 'f> {
         self.view.prepare(number, self.level);
         match self.view.solid(number) {
             Solid::Sphere(sphere) => {
-                let ellipse = Ellipse::outline(sphere.center, sphere.radius, grid);
-                let ellipse = &*arena.alloc(ellipse);
+                let outline = || Ellipse::outline(sphere.center, sphere.radius, grid);
+                let ellipse = &*arena.alloc_with(outline);
                 Outlined {
                     number,
                     depth: Depth::of_sphere(sphere.center, ellipse, sphere.support, grid),

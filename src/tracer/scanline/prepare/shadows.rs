@@ -124,8 +124,8 @@ pub(crate) fn shadows_on<'f>(
                 let before = before
                     .iter()
                     .map(|half_space| HalfPlane::of(half_space, Some(plane), grid));
-                let ellipse = lines.meet(sphere, grid);
-                Region::new(collect(arena, before), Some(arena.alloc(ellipse)), grid)
+                let ellipse = arena.alloc_with(|| lines.meet(sphere, grid));
+                Region::new(collect(arena, before), Some(ellipse), grid)
             }
             Solid::Tetrahedron(t) => {
                 let lines = (&t.solid, to_light.vector);
