@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::convert::Infallible;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-pub(crate) use bounded::Bounded;
+pub(crate) use bounded::{Bounded, Divisor};
 pub(crate) use double_double::DoubleDouble;
 pub(crate) use expression::{Expression, Session};
 pub(crate) use four::FourBounded;

@@ -49,6 +49,29 @@ impl Bounded {
         error: f64::INFINITY,
     };
 
+    /// 0, which has no error.
+    pub(crate) const ZERO: Bounded = Bounded {
+        value: 0.0,
+        error: 0.0,
+    };
+
+    /// Whether neither its magnitude nor its error is larger than that of another number; never
+    /// where one is a NaN.
+    #[inline]
+    pub(crate) fn is_no_larger(self, other: Bounded) -> bool {
+        (self.value.abs() <= other.value.abs()) & (self.error <= other.error)
+    }
+
+    /// A number of the larger magnitude and the larger error of both; a NaN of this one is larger
+    /// than all.
+    pub(crate) fn larger(self, other: Bounded) -> Bounded {
+        let larger = |a: f64, b: f64| if a < b { b } else { a };
+        Bounded {
+            value: larger(self.value.abs(), other.value.abs()),
+            error: larger(self.error, other.error),
+        }
+    }
+
     /// A number that the truth is not below.
     #[inline]
     pub(crate) fn at_least(self) -> f64 {
@@ -148,14 +171,42 @@ impl Div for Bounded {
     type Output = Bounded;
     #[inline]
     fn div(self, other: Bounded) -> Bounded {
+        Divisor::new(other).divide(self)
+    }
+}
+
+/// What several numbers are divided by. The division that only their bounds need is done once.
+#[derive(Clone, Copy)]
+pub(crate) struct Divisor {
+    number: Bounded,
+    /// 1 over the least magnitude that it can have; infinite where it tells nothing.
+    inverse: f64,
+}
+
+impl Divisor {
+    #[inline]
+    pub(crate) fn new(number: Bounded) -> Divisor {
         // A divisor known to fewer than 26 bits tells nothing worth knowing.
-        let divisor = other.value.abs();
-        let known = other.error < divisor * f64::EPSILON.sqrt();
-        if !known {
+        let magnitude = number.value.abs();
+        let known = number.error < magnitude * f64::EPSILON.sqrt();
+        Divisor {
+            number,
+            inverse: if known {
+                1.0 / (magnitude - number.error)
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+
+    /// The quotient of a number and this divisor.
+    #[inline]
+    pub(crate) fn divide(self, dividend: Bounded) -> Bounded {
+        if self.inverse == f64::INFINITY {
             return Bounded::UNKNOWN;
         }
-        let value = self.value / other.value;
-        let carried = (self.error + value.abs() * other.error) / (divisor - other.error);
+        let value = dividend.value / self.number.value;
+        let carried = (dividend.error + value.abs() * self.number.error) * self.inverse;
         Bounded {
             value,
             error: (carried + U * value.abs()) * ROUND_UP + UNDERFLOW,

@@ -13,7 +13,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, RowPixels as _, Rung};
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::ellipse::SphereOutlines;
 use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
@@ -64,7 +64,7 @@ fn check_spheres(
     shares: &mut Shares,
 ) {
     for (sphere, exact) in bounded.view.spheres.iter().zip(truth.view.spheres) {
-        let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
+        let outline = SphereOutlines::new(grid).of(sphere.center, sphere.radius);
         let depth = Depth::of_sphere(sphere.center, &outline, sphere.support, grid);
         for row in (0..SIZE).step_by(7) {
             let y = grid.coordinate(row);

@@ -279,6 +279,7 @@ mod tests {
     use super::*;
     use crate::number::{Bounded, Real as _};
     use crate::random::Random;
+    use crate::tracer::scanline::edges::ellipse::SphereOutlines;
     use crate::tracer::vector::Vector;
 
     const SIZE: u32 = 24;
@@ -330,7 +331,7 @@ mod tests {
             let ellipse = sphere.map(|([x, y, z], radius)| {
                 let [x, y, z, radius] =
                     [x, y, z, radius].map(|twice| Bounded::exact(twice as f64 / 2.0));
-                Ellipse::outline(Vector::new(x, y, z), radius, grid)
+                SphereOutlines::new(grid).of(Vector::new(x, y, z), radius)
             });
             let region = Region::new(&half_planes, ellipse.as_ref(), grid);
             let arena = Bump::new();

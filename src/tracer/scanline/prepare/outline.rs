@@ -10,7 +10,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Extent;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::ellipse::SphereOutlines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
@@ -42,6 +42,7 @@ pub(crate) struct Outlines<'v, 'f> {
     pub(crate) numbers: &'f [usize],
     /// The sum of the areas of their extents, in pixels.
     area: u64,
+    of_spheres: SphereOutlines,
     /// The outlines of these solids, once they are culled.
     culled: Option<Growing<'f, Outlined<'f>>>,
 }
@@ -105,6 +106,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
                 .iter()
                 .map(|&number| view.extents.of(number).area())
                 .sum(),
+            of_spheres: SphereOutlines::new(grid),
             culled: None,
         }
     }
@@ -182,7 +184,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
         self.view.prepare(number, self.level);
         match self.view.solid(number) {
             Solid::Sphere(sphere) => {
-                let outline = || Ellipse::outline(sphere.center, sphere.radius, grid);
+                let outline = || self.of_spheres.of(sphere.center, sphere.radius);
                 let ellipse = &*arena.alloc_with(outline);
                 Outlined {
                     number,

@@ -113,7 +113,7 @@ pub(crate) fn shadows_on<'f>(
     arena: &'f Bump,
 ) -> impl Iterator<Item = Region<'f>> {
     let to_light = view.shading.to_light;
-    let lines = LazyCell::new(move || ParallelLines::new(plane, to_light));
+    let lines = LazyCell::new(move || ParallelLines::new(plane, to_light, grid));
     let shape = move |caster: u16| {
         let caster = usize::from(caster);
         view.prepare(caster, level);
@@ -124,7 +124,7 @@ pub(crate) fn shadows_on<'f>(
                 let before = before
                     .iter()
                     .map(|half_space| HalfPlane::of(half_space, Some(plane), grid));
-                let ellipse = arena.alloc_with(|| lines.meet(sphere, grid));
+                let ellipse = arena.alloc_with(|| lines.meet(sphere));
                 Region::new(collect(arena, before), Some(ellipse), grid)
             }
             Solid::Tetrahedron(t) => {

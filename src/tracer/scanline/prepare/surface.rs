@@ -68,10 +68,10 @@ impl<'f> PreparedSurface<'f> {
             parts.arena,
         );
         // The half-planes of a tetrahedron's shadow do not tell in which rows it lies.
-        let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light));
+        let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light, grid));
         let rows_of = |caster: u16| match view.solid(usize::from(caster)) {
             Solid::Sphere(_) => rows,
-            Solid::Tetrahedron(t) => lines.rows_through(t.solid.vertices(), grid),
+            Solid::Tetrahedron(t) => lines.rows_through(t.solid.vertices()),
         };
         let cast = casters
             .zip(cast)

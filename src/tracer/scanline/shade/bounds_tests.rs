@@ -14,7 +14,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, RowPixels, Rung};
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::Ellipse;
+use crate::tracer::scanline::edges::ellipse::SphereOutlines;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::shade::caster::ShadowCylinder;
 use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
@@ -326,7 +326,7 @@ fn check_view(
     let grid = Grid::new(SIZE);
     let (view, true_view) = (bounded.1, truth.1);
     for (index, sphere) in view.spheres.iter().enumerate() {
-        let outline = Ellipse::outline(sphere.center, sphere.radius, grid);
+        let outline = SphereOutlines::new(grid).of(sphere.center, sphere.radius);
         let color = bounded.0.solid_color(index) * bounded.2;
         let lighting = Lighting::new(&view.shading);
         let bounds = HitBounds::new(sphere, &outline);

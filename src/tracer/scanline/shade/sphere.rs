@@ -11,7 +11,7 @@
 use std::cmp::Ordering;
 
 use crate::number::rounding::{INFLATION, U};
-use crate::number::{Bounded, Real};
+use crate::number::{Bounded, Divisor, Real};
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::ellipse::{Ellipse, RowOffset};
 use crate::tracer::scanline::shade::light::{Highlight, Lighting};
@@ -151,8 +151,9 @@ impl HitBounds {
         let squared =
             outline.chord_error + (2.0 * radius + q_error) * q_error + 2.0 * U * radius * radius;
         // |√A − √a| ≤ |A − a|/√a, and the root rounds.
+        let over_radius = squared / radius;
         let s_errors =
-            ZONE_DIVISORS.map(|divisor| (squared * divisor / radius + U * radius) * INFLATION);
+            ZONE_DIVISORS.map(|divisor| (over_radius * divisor + U * radius) * INFLATION);
         HitBounds {
             center: sphere.center,
             radius,
@@ -211,6 +212,7 @@ impl HitBounds {
         h: [Bounded; 3],
         highlight: &Highlight,
         radius: Bounded,
+        divisor: Divisor,
     ) -> SphereHighlight {
         // 1 − n·h is computed as Y = |D|²/2, where D = n − h = (q, m, s)/R − h. Let ε be the error
         // of D without the rounding of its three differences, which is less than u of D. Then the
@@ -220,8 +222,9 @@ impl HitBounds {
         let n = f64::from(highlight.exponent);
         let steepest = highlight.steepest;
         // No component of n is more than 1. 1/R and the product with it round.
-        let scaled = radius.error() / radius.value() + 3.0 * U;
-        let part = |error: f64, h: Bounded| error / radius.value() + h.error() + scaled;
+        let inverse = 1.0 / radius.value();
+        let scaled = radius.error() * inverse + 3.0 * U;
+        let part = |error: f64, h: Bounded| error * inverse + h.error() + scaled;
         let errors = self.s_errors.map(|s_error| {
             let [q, m, s] = [
                 part(self.q_error, h[0]),
@@ -241,7 +244,7 @@ impl HitBounds {
             }
         });
         SphereHighlight {
-            form: self.form(h.map(|component| component / radius)),
+            form: self.form(h.map(|component| divisor.divide(component))),
             errors,
             max_distance: (highlight.max_distance + part(self.m_error, h[1])) * INFLATION,
         }
@@ -299,12 +302,13 @@ impl<'f> SphereConstants<'f> {
         color: Vector<Bounded>,
         has_shadows: bool,
     ) -> SphereConstants<'f> {
-        let to_light = lighting.to_light_unit.map(|part| part / sphere.radius);
+        let divisor = Divisor::new(sphere.radius);
+        let to_light = lighting.to_light_unit.map(|part| divisor.divide(part));
         let n_dot_l = bounds.form(to_light);
         let highlight = &lighting.highlight;
         let sphere_highlight = lighting
             .halfway
-            .map(|h| bounds.highlight(h, highlight, sphere.radius));
+            .map(|h| bounds.highlight(h, highlight, sphere.radius, divisor));
         // A power below 2⁻⁵⁹ is left out, or replaced by 2⁻⁵⁹. The form tells such powers, if its
         // error changes the power by no more than a factor of 1.05.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
