@@ -2,4 +2,5 @@
 
 pub(super) mod history;
 pub(super) mod paint;
+pub(super) mod pixels;
 pub(super) mod row_writer;

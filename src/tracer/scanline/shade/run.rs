@@ -153,7 +153,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         in_doubt |= beyond;
         let samples = &mut run.samples[3 * first..3 * (first + here)];
         if in_shadow & all == all {
-            fill(simd, samples, run.in_shadow);
+            fill(simd, samples, here, run.in_shadow);
         } else {
             let ambient = row.ambient(zone);
             let lit_low = row.lit(x[0], now[0], &ambient, (zone, bright));

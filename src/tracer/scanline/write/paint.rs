@@ -3,10 +3,11 @@
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
 use bumpalo_herd::Member;
+use fearless_simd::Simd;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4};
 
 use crate::tracer::decision::Decision;
+use crate::tracer::scanline::write::pixels;
 
 /// A decision that many pixels show, and its colour as it lies in memory.
 #[derive(Clone, Copy)]
@@ -26,9 +27,9 @@ impl Paint {
 
     /// The vector of samples from number `index` on, where 0 is the first sample of a pixel.
     #[inline(always)]
-    fn from<S: Simd, V: SimdFloat<S, Element = f32>>(&self, simd: S, index: usize) -> V {
+    fn from<S: Simd>(&self, simd: S, index: usize) -> S::f32s {
         let channel = index % 3;
-        V::from_slice(simd, &self.samples[channel..channel + V::LEN])
+        S::f32s::from_slice(simd, &self.samples[channel..channel + S::f32s::LEN])
     }
 
     pub(crate) fn bits(&self) -> Bits {
@@ -91,58 +92,55 @@ impl AllPaints<'_> {
     }
 }
 
-/// Fills samples with a colour, from its first channel on.
+/// Fills the first `count` pixels of `samples` with a colour.
 #[inline(always)]
-pub(crate) fn fill<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
-    if samples.len() >= S::f32s::LEN {
-        fill_by::<S, S::f32s>(simd, samples, paint);
-    } else if samples.len() >= 4 {
-        fill_by::<S, f32x4<S>>(simd, samples, paint);
+pub(crate) fn fill<S: Simd>(simd: S, samples: &mut [f32], count: usize, paint: &Paint) {
+    let width = S::f32s::LEN;
+    if count <= width {
+        let vectors = [
+            paint.from(simd, 0),
+            paint.from(simd, width),
+            paint.from(simd, 2 * width),
+        ];
+        pixels::store(simd, samples, &vectors, count);
     } else {
-        for (sample, color) in samples.iter_mut().zip(&paint.samples) {
-            *sample = *color;
-        }
+        fill_many(simd, &mut samples[..3 * count], paint);
     }
 }
 
-/// Fills at least as many samples as a vector holds. The processor cannot predict how many, so only
-/// one branch and the end of the loop depend on it: vectors may overlap instead.
+/// Fills more than three vectors. The processor cannot predict how many, so only one branch and the
+/// end of the loop depend on it: vectors may overlap instead.
 #[inline(always)]
-fn fill_by<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, samples: &mut [f32], paint: &Paint) {
-    let width = V::LEN;
+fn fill_many<S: Simd>(simd: S, samples: &mut [f32], paint: &Paint) {
+    let width = S::f32s::LEN;
     let last = samples.len() - width;
-    store::<S, V>(simd, samples, 0, paint);
+    store(simd, samples, 0, paint);
     if last <= 4 * width {
         for index in [width, 2 * width, 3 * width, last] {
-            store::<S, V>(simd, samples, index.min(last), paint);
+            store(simd, samples, index.min(last), paint);
         }
         return;
     }
     // A store that crosses into another cache line takes twice as long, so the rest is aligned.
     let first = samples.as_ptr().align_offset(4 * width).min(last);
-    let one = paint.from::<S, V>(simd, first);
-    let two = paint.from::<S, V>(simd, first + width);
-    let three = paint.from::<S, V>(simd, first + 2 * width);
+    let one = paint.from(simd, first);
+    let two = paint.from(simd, first + width);
+    let three = paint.from(simd, first + 2 * width);
     for block in samples[first..].chunks_exact_mut(3 * width) {
         one.store_slice(&mut block[..width]);
         two.store_slice(&mut block[width..2 * width]);
         three.store_slice(&mut block[2 * width..]);
     }
     for back in [2 * width, width, 0] {
-        store::<S, V>(simd, samples, last - back, paint);
+        store(simd, samples, last - back, paint);
     }
 }
 
 /// Stores a vector of samples at `index`.
 #[inline(always)]
-fn store<S: Simd, V: SimdFloat<S, Element = f32>>(
-    simd: S,
-    samples: &mut [f32],
-    index: usize,
-    paint: &Paint,
-) {
-    let vector = paint.from::<S, V>(simd, index);
-    vector.store_slice(&mut samples[index..index + V::LEN]);
+fn store<S: Simd>(simd: S, samples: &mut [f32], index: usize, paint: &Paint) {
+    let vector = paint.from(simd, index);
+    vector.store_slice(&mut samples[index..index + S::f32s::LEN]);
 }
 
 #[cfg(test)]
@@ -158,8 +156,7 @@ mod tests {
             for length in (0..80).chain([150, 299, 300, 301]) {
                 for start in 0..20 {
                     let mut samples = vec![1.0; start + 3 * length + 20];
-                    let filled = &mut samples[start..start + 3 * length];
-                    dispatch!(level, simd => fill(simd, filled, &paint));
+                    dispatch!(level, simd => fill(simd, &mut samples[start..], length, &paint));
                     for (index, sample) in samples.into_iter().enumerate() {
                         let expected = match index.checked_sub(start) {
                             Some(index) if index < 3 * length => [0.25, 0.5, 0.75][index % 3],

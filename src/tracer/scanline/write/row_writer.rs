@@ -83,8 +83,8 @@ impl<'r> RowWriter<'r> {
 
     fn write_pending(&mut self) {
         if let Some((pixels, paint)) = self.pending.take() {
-            let samples = &mut self.samples[3 * pixels.start..3 * pixels.end];
-            dispatch!(self.level, simd => paint::fill(simd, samples, paint));
+            let samples = &mut self.samples[3 * pixels.start..];
+            dispatch!(self.level, simd => paint::fill(simd, samples, pixels.len(), paint));
         }
     }
 
