@@ -349,9 +349,8 @@ impl<'f> RowTracer<'f> {
             Shown::Paint(paint) => writer.fill(columns, &self.frame.paints[paint]),
             Shown::Sphere { mirrored, solid } => {
                 if let Appearance::Sphere(shaded) = self.frame.solids(mirrored).appearance(solid) {
-                    let in_shadow = &self.frame.paints[shaded.in_shadow];
                     let shader = &mut painters.shader;
-                    shader.shade(writer, columns, shaded, in_shadow, self.pixels);
+                    shader.shade(writer, columns, shaded, self.pixels);
                 }
             }
             Shown::Faces { mirrored, solid } => {

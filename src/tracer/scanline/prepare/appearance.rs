@@ -167,9 +167,8 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         parts: &mut Builder<'f, '_>,
     ) -> Appearance<'f> {
         let arena = parts.arena;
-        let mut paint = |in_shadow| parts.paints.add(self.decision(number, None, in_shadow));
         if self.picture.stage == Stage::Spheres {
-            return Appearance::Flat(paint(false));
+            return Appearance::Flat(parts.paints.add(self.decision(number, None, false)));
         }
         let color = if self.mirrored {
             self.picture.reflected(color)
@@ -188,7 +187,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             let solids = casters_on(&bounds, number, self.view, lighting, casters, arena);
             all_casters.extend(solids.chain(surface));
         }
-        let in_shadow = paint(self.has_shadows);
+        let in_shadow = self.decision(number, None, self.has_shadows);
         parts.shaded_spheres += 1;
         Appearance::Sphere(arena.alloc_with(|| ShadedSphere {
             number: parts.shaded_spheres - 1,
@@ -202,7 +201,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             ),
             casters: all_casters.into_bump_slice(),
             in_light: self.decision(number, None, false),
-            in_shadow,
+            in_shadow: parts.paints.of(in_shadow),
         }))
     }
 

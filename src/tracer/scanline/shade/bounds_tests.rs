@@ -18,7 +18,7 @@ use crate::tracer::scanline::edges::ellipse::SphereOutlines;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::shade::caster::ShadowCylinder;
 use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};
-use crate::tracer::scanline::shade::equation::RowShader;
+use crate::tracer::scanline::shade::equation::{Hits, RowShader};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::sphere::{HitBounds, LinearForm, SphereConstants, ZONES};
@@ -187,20 +187,17 @@ struct Case<'c> {
 }
 
 impl Case<'_> {
-    /// Checks what neighbouring pixels from `first` on find out about their zones, where they have
-    /// these s.
+    /// Checks what pixels with these hits find out about their zones.
     #[inline(always)]
-    fn check_classes<S: Simd>(&self, in_row: &RowShader<'_, S, Certified>, first: u32, s: &[f64]) {
-        let least = self.constants.min_squares;
+    fn check_classes<S: Simd>(&self, in_row: &RowShader<'_, S, Certified>, hits: &Hits<S::f64s>) {
+        let (s, least) = (hits.s.as_slice(), self.constants.min_squares);
         let is_near = |s: &f64| {
             least
                 .iter()
                 .any(|least| (s * s - least).abs() < 1e-6 * least)
         };
         if !s.iter().any(is_near) {
-            let end = first + s.len() as u32;
-            let [x, last] = [first, end - 1].map(|column| self.grid.coordinate(column));
-            let classes = in_row.classify([x, x], last, (1 << s.len()) - 1);
+            let classes = in_row.classify(hits, (1 << s.len()) - 1);
             let zones = s
                 .iter()
                 .map(|s| least.iter().take_while(|least| s * s < **least).count());
@@ -252,12 +249,9 @@ impl Case<'_> {
             let x = self.grid.coordinate(first);
             let hits = in_row.hits(x);
             let facing = in_row.value(&constants.n_dot_l, &hits);
-            let zones = [0, 1, 2].map(|zone| {
-                let ambient = in_row.ambient(zone);
-                in_row.lit(x, facing, &ambient, (zone, u64::MAX))
-            });
+            let zones = [0, 1, 2].map(|zone| in_row.lit(&hits, facing, (zone, u64::MAX)));
             let forms = self.forms.map(|form| in_row.value(&form, &hits));
-            self.check_classes(&in_row, first, hits.s.as_slice());
+            self.check_classes(&in_row, &hits);
             for lane in 0..S::f64s::LEN {
                 let q = hits.q.as_slice()[lane];
                 let squared = constants.squared_radius - m * m - q * q;
@@ -301,13 +295,9 @@ impl Case<'_> {
                     } else {
                         &mut found.dull
                     };
-                    let sample = 3 * lane + i;
-                    let (vector, lane) = (sample / S::f64s::LEN, sample % S::f64s::LEN);
-                    channels.note_between(
-                        channel,
-                        samples[vector][0].as_slice()[lane],
-                        samples[vector][1].as_slice()[lane],
-                    );
+                    let computed = samples.channels[i].as_slice()[lane];
+                    let error = samples.error.as_slice()[lane];
+                    channels.note_between(channel, computed - error, computed + error);
                 }
             }
         }

@@ -183,7 +183,7 @@ impl SphereBand {
             }
             if let Some(highlight) = &sphere.highlight {
                 let threshold = sphere.lighting.highlight.threshold;
-                // As `SphereHighlight::reaches`, for several rows.
+                // |n − h| is no less than its component along the axis of m.
                 let is_near = (m * sphere.inverse_radius - sphere.lighting.highlight.halfway[1])
                     .abs()
                     .simd_le(highlight.max_distance);

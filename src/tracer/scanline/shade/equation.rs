@@ -10,6 +10,7 @@ use crate::tracer::scanline::shade::policy::{Answers, LaneVector, Mask, Policy, 
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, SphereHighlight};
 
 /// The classes of some pixels of a sphere, which tell how they are shaded.
+#[derive(Clone, Copy)]
 pub(crate) struct Classes {
     /// The outermost zone that any of them is in.
     pub(crate) zone: usize,
@@ -22,6 +23,7 @@ pub(crate) struct Classes {
 // No closures below: see `shade/run.rs`.
 
 /// The coordinates of the hits of neighbouring pixels; m is that of the row.
+#[derive(Clone, Copy)]
 pub(crate) struct Hits<V> {
     pub(crate) q: V,
     pub(crate) s: V,
@@ -62,79 +64,45 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         P::product_plus(hits.s, s, P::product_plus(hits.q, q, of_row))
     }
 
-    /// q and s² = R² − m² − q² of the pixels from X = `x` on.
+    /// s² = R² − m² − q².
     #[inline(always)]
-    fn squares(&self, x: f64) -> [LaneVector<S, P>; 2] {
-        let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
-        [q, P::product_plus(q, -q, self.squared)]
+    fn squares(&self, q: LaneVector<S, P>) -> LaneVector<S, P> {
+        P::product_plus(q, -q, self.squared)
     }
 
     /// The hits from X = `x` on.
     #[inline(always)]
     pub(crate) fn hits(&self, x: f64) -> Hits<LaneVector<S, P>> {
-        let [q, squared] = self.squares(x);
+        let q = P::Lane::differences(self.simd, x, self.sphere.center_x);
         Hits {
             q,
-            s: squared.max(P::Lane::of(0.0)).sqrt(),
+            s: self.squares(q).max(P::Lane::of(0.0)).sqrt(),
         }
     }
 
-    /// What the pixels of a run tell of themselves: those whose bits are set in `pixels`, from X =
-    /// `x` to X = `last`, in two vectors if one does not hold all, from `next` on.
+    /// What pixels tell of themselves: those whose bits are set in `pixels`.
     #[inline(always)]
-    pub(crate) fn classify(&self, [x, next]: [f64; 2], last: f64, pixels: u64) -> Classes {
+    pub(crate) fn classify(&self, hits: &Hits<LaneVector<S, P>>, pixels: u64) -> Classes {
         let sphere = self.sphere;
-        // s² falls with |q|, and rounding is monotonic: so s² is least at an end. The margin of the
-        // zones allows for fused operations.
-        let squares = [x, last].map(|x| {
-            let q = x - sphere.center_x;
-            (sphere.squared_radius - self.m * self.m) - q * q
-        });
-        // A NaN is in no zone.
-        let is_out = |least: f64| !(squares[0] >= least && squares[1] >= least);
+        let squares = self.squares(hits.q);
         let [innermost, inner, outermost] = sphere.min_squares;
-        let mut beyond = 0;
-        if is_out(outermost) {
-            beyond = pixels;
-            for (shift, x) in self.vectors([x, next], pixels) {
-                let [_, squared] = self.squares(x);
-                let is_inside = squared.simd_ge(P::Lane::of(outermost));
-                beyond &= !(is_inside.to_bitmask() << shift);
-            }
-        }
+        // A NaN is in no zone. The margin of the zones allows for fused operations.
+        let out_of_innermost = pixels & !squares.simd_ge(P::Lane::of(innermost)).to_bitmask();
+        let out_of_inner = pixels & !squares.simd_ge(P::Lane::of(inner)).to_bitmask();
+        let beyond = pixels & !squares.simd_ge(P::Lane::of(outermost)).to_bitmask();
         let mut bright = 0;
-        if let Some(highlight) = &sphere.highlight
-            && highlight.reaches(self.m * sphere.inverse_radius, sphere.lighting)
-        {
+        if let Some(highlight) = &sphere.highlight {
             let threshold = P::Lane::of(sphere.lighting.highlight.threshold);
-            for (shift, x) in self.vectors([x, next], pixels) {
-                let halfway = self.value(&highlight.form, &self.hits(x));
-                bright |= halfway.simd_gt(threshold).to_bitmask() << shift;
-            }
+            bright = self
+                .value(&highlight.form, hits)
+                .simd_gt(threshold)
+                .to_bitmask();
         }
         Classes {
-            zone: usize::from(is_out(innermost)) + usize::from(is_out(inner)),
+            zone: usize::from(out_of_innermost != 0) + usize::from(out_of_inner != 0),
             bright: bright & pixels & !beyond,
             beyond,
         }
-    }
-
-    /// The first pixel of each vector that holds any of `pixels`: its number, and its X.
-    #[inline(always)]
-    fn vectors(&self, x: [f64; 2], pixels: u64) -> impl Iterator<Item = (usize, f64)> {
-        let lanes = LaneVector::<S, P>::LEN;
-        let has_two = lanes < S::f32s::LEN && pixels >> lanes != 0;
-        [0, lanes].into_iter().zip(x).take(1 + usize::from(has_two))
-    }
-
-    /// n·l of the pixels from X = `x` on, in two vectors if one does not hold all, from `next` on.
-    #[inline(always)]
-    pub(crate) fn lights(&self, [x, next]: [f64; 2]) -> [LaneVector<S, P>; 2] {
-        let mut lights = [self.value(&self.sphere.n_dot_l, &self.hits(x)); 2];
-        if LaneVector::<S, P>::LEN < S::f32s::LEN {
-            lights[1] = self.value(&self.sphere.n_dot_l, &self.hits(next));
-        }
-        lights
     }
 
     /// Whether a caster stands between a hit and the light.
@@ -178,61 +146,45 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         Mask::<S, P>::splat(self.simd, all)
     }
 
-    /// The ambient part of samples, with the bound on the error of all parts but the highlight.
-    #[inline(always)]
-    pub(crate) fn ambient(&self, zone: usize) -> Samples<S, P> {
-        let error = splat::<S, P>(self.simd, self.sphere.errors[zone]);
-        let [red, green, blue] = P::Lane::samples_of(self.simd, &self.sphere.color.ambient);
-        [
-            P::within(red, error),
-            P::within(green, error),
-            P::within(blue, error),
-        ]
-    }
-
-    /// Samples of pixels in the light, from X = `x` on: ambient + diffuse · max(0, n·l) + specular
-    /// · (n·h)ⁿ. `light` is their n·l; `bright` has a bit for each that may have a highlight.
+    /// Samples of pixels in the light: ambient + diffuse · max(0, n·l) + specular · (n·h)ⁿ. `light`
+    /// is their n·l; `bright` has a bit for each that may have a highlight.
     #[inline(always)]
     pub(crate) fn lit(
         &self,
-        x: f64,
+        hits: &Hits<LaneVector<S, P>>,
         light: LaneVector<S, P>,
-        ambient: &Samples<S, P>,
         (zone, bright): (usize, u64),
-    ) -> Samples<S, P> {
-        let mut samples = *ambient;
-        let light = spread(light.max(P::Lane::of(0.0)));
-        let diffuse = P::Lane::samples_of(self.simd, &self.sphere.color.diffuse);
+    ) -> Samples<LaneVector<S, P>> {
+        let color = &self.sphere.color;
+        let light = light.max(P::Lane::of(0.0));
+        let mut channels = [light; 3];
         for i in 0..3 {
-            for sample in samples[i].as_mut() {
-                *sample = P::product_plus(light[i], diffuse[i], *sample);
-            }
+            let ambient = splat::<S, P>(self.simd, color.ambient[i]);
+            let diffuse = splat::<S, P>(self.simd, color.diffuse[i]);
+            channels[i] = P::product_plus(light, diffuse, ambient);
         }
+        let mut error = splat::<S, P>(self.simd, self.sphere.errors[zone]);
         if let Some(highlight) = &self.sphere.highlight
             && bright != 0
         {
-            let power = self.highlight(highlight, &self.hits(x), (zone, bright));
-            let specular = P::Lane::samples_of(self.simd, &self.sphere.color.specular);
-            for (side, power) in power.as_ref().iter().enumerate() {
-                // No coefficient is negative, so lower ends stay lower ends.
-                let power = spread(*power);
-                for i in 0..3 {
-                    let sample = &mut samples[i].as_mut()[side];
-                    *sample = P::product_plus(power[i], specular[i], *sample);
-                }
+            let (power, specular_error) = self.highlight(highlight, hits, (zone, bright));
+            for i in 0..3 {
+                let specular = splat::<S, P>(self.simd, color.specular[i]);
+                channels[i] = P::product_plus(power, specular, channels[i]);
             }
+            error = error + specular_error;
         }
-        samples
+        Samples { channels, error }
     }
 
-    /// (n·h)ⁿ of the bright pixels.
+    /// (n·h)ⁿ of the bright pixels, and a bound on the error of the highlight in any channel.
     #[inline(always)]
     fn highlight(
         &self,
         highlight: &SphereHighlight,
         hits: &Hits<LaneVector<S, P>>,
         (zone, bright): (usize, u64),
-    ) -> P::Enclosure<LaneVector<S, P>> {
+    ) -> (LaneVector<S, P>, LaneVector<S, P>) {
         let (simd, of) = (self.simd, P::Lane::of);
         // 1 − n·h = |n − h|²/2 is small, and known to a small relative error, where the highlight
         // is bright.
@@ -250,7 +202,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         // xⁿ⁻¹ is at most 2xⁿ for x ≥ 1/2, and at most 2¹⁻ⁿ for smaller x; the factor 1.06 is that
         // of max(X, x)ⁿ⁻¹ over xⁿ⁻¹.
         let steep = power * of(2.0 * 1.06) + of(1.06 * view.smallest_power);
-        P::within(power, (one_minus * of(slope) + of(constant)) * steep)
+        (power, (one_minus * of(slope) + of(constant)) * steep)
     }
 }
 
@@ -278,16 +230,4 @@ fn power<S: Simd, P: Policy<S>>(
         }
         square = P::square(square);
     }
-}
-
-/// The number of each pixel three times, once for each of its samples.
-#[inline(always)]
-fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
-    let mut samples = [pixels; 3];
-    for (i, vector) in samples.iter_mut().enumerate() {
-        for (lane, sample) in vector.as_mut_slice().iter_mut().enumerate() {
-            *sample = pixels.as_slice()[(i * V::LEN + lane) / 3];
-        }
-    }
-    samples
 }

@@ -32,15 +32,17 @@ pub(crate) type Answers<S, P> = (Mask<S, P>, Mask<S, P>);
 /// Some pixels of a vector.
 pub(crate) type Mask<S, P> = <LaneVector<S, P> as SimdBase<S>>::Mask;
 
-/// Three vectors of samples as they lie in memory.
-pub(crate) type Samples<S, P> = [<P as Policy<S>>::Enclosure<LaneVector<S, P>>; 3];
+/// The red, the green and the blue of some pixels, and a bound on the errors of all three; without
+/// bounds it is not used.
+#[derive(Clone, Copy)]
+pub(crate) struct Samples<V> {
+    pub(crate) channels: [V; 3],
+    pub(crate) error: V,
+}
 
 /// An arithmetic of the shader: its numbers, and what it does about their errors.
 pub(crate) trait Policy<S: Simd> {
     type Lane: Lane;
-
-    /// A number without bounds, or the two ends of its enclosure.
-    type Enclosure<V: Copy>: Copy + AsRef<[V]> + AsMut<[V]>;
 
     /// a b + c.
     fn product_plus(
@@ -51,12 +53,6 @@ pub(crate) trait Policy<S: Simd> {
 
     /// Whether values, of which `error` bounds the errors, are 0 or more.
     fn is_not_negative(value: LaneVector<S, Self>, error: f64) -> Answers<S, Self>;
-
-    /// Values with these bounds on their errors.
-    fn within(
-        value: LaneVector<S, Self>,
-        error: LaneVector<S, Self>,
-    ) -> Self::Enclosure<LaneVector<S, Self>>;
 
     /// 1 − `one_minus`, as the factor of a power.
     #[inline(always)]
@@ -89,9 +85,12 @@ pub(crate) trait Policy<S: Simd> {
         highlight
     }
 
-    /// Samples rounded to f32, and a bit for each pixel in doubt. `low` and `high` are as in
-    /// [`Lane::narrow`].
-    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64);
+    /// Samples rounded to f32, and a bit for each pixel in doubt. `high` holds the pixels for which
+    /// `low` has no room.
+    fn round(
+        low: Samples<LaneVector<S, Self>>,
+        high: Samples<LaneVector<S, Self>>,
+    ) -> ([S::f32s; 3], u64);
 }
 
 /// f64 with bounds.
@@ -99,7 +98,6 @@ pub(crate) struct Certified;
 
 impl<S: Simd> Policy<S> for Certified {
     type Lane = f64;
-    type Enclosure<V: Copy> = [V; 2];
 
     #[inline(always)]
     fn product_plus(a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
@@ -112,39 +110,29 @@ impl<S: Simd> Policy<S> for Certified {
     }
 
     #[inline(always)]
-    fn within(value: S::f64s, error: S::f64s) -> [S::f64s; 2] {
-        [value - error, value + error]
-    }
-
-    #[inline(always)]
-    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64) {
-        let [[a, b], [c, d], [e, f]] = low;
-        let [[g, h], [i, j], [k, l]] = high;
-        let lower = f64::narrow::<S>([a, c, e], [g, i, k]);
-        let upper = f64::narrow::<S>([b, d, f], [h, j, l]);
+    fn round(low: Samples<S::f64s>, high: Samples<S::f64s>) -> ([S::f32s; 3], u64) {
+        let [a, b, c] = low.channels;
+        let [d, e, f] = high.channels;
+        let lower = [
+            f64::narrow::<S>(a - low.error, d - high.error),
+            f64::narrow::<S>(b - low.error, e - high.error),
+            f64::narrow::<S>(c - low.error, f - high.error),
+        ];
+        let upper = [
+            f64::narrow::<S>(a + low.error, d + high.error),
+            f64::narrow::<S>(b + low.error, e + high.error),
+            f64::narrow::<S>(c + low.error, f + high.error),
+        ];
         // A NaN is not equal to itself, so it is in doubt, too.
-        let first = !lower[0].simd_eq(upper[0]);
-        let second = !lower[1].simd_eq(upper[1]);
-        let third = !lower[2].simd_eq(upper[2]);
-        let mut doubts = 0;
-        if (first | second | third).any_true() {
-            for (i, differ) in [first, second, third].into_iter().enumerate() {
-                let mut samples = differ.to_bitmask();
-                while samples != 0 {
-                    let sample = i * S::f32s::LEN + samples.trailing_zeros() as usize;
-                    doubts |= 1 << (sample / 3);
-                    samples &= samples - 1;
-                }
-            }
-        }
-        (upper, doubts)
+        let is_certain =
+            lower[0].simd_eq(upper[0]) & lower[1].simd_eq(upper[1]) & lower[2].simd_eq(upper[2]);
+        (upper, (!is_certain).to_bitmask())
     }
 }
 
 /// Without bounds.
 impl<S: Simd, L: Lane> Policy<S> for L {
     type Lane = L;
-    type Enclosure<V: Copy> = [V; 1];
 
     #[inline(always)]
     fn product_plus(a: L::Vector<S>, b: L::Vector<S>, c: L::Vector<S>) -> L::Vector<S> {
@@ -155,11 +143,6 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     fn is_not_negative(value: L::Vector<S>, _: f64) -> Answers<S, Self> {
         let is_not_negative = value.simd_ge(L::of(0.0));
         (is_not_negative, !is_not_negative)
-    }
-
-    #[inline(always)]
-    fn within(value: L::Vector<S>, _: L::Vector<S>) -> [L::Vector<S>; 1] {
-        [value]
     }
 
     // A factor 1 − x is kept as x: 1 − x would lose the digits of a small x.
@@ -192,9 +175,14 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     }
 
     #[inline(always)]
-    fn round(low: Samples<S, Self>, high: Samples<S, Self>) -> ([S::f32s; 3], u64) {
-        let [[a], [b], [c]] = low;
-        let [[d], [e], [f]] = high;
-        (L::narrow::<S>([a, b, c], [d, e, f]), 0)
+    fn round(low: Samples<L::Vector<S>>, high: Samples<L::Vector<S>>) -> ([S::f32s; 3], u64) {
+        let [a, b, c] = low.channels;
+        let [d, e, f] = high.channels;
+        let samples = [
+            L::narrow::<S>(a, d),
+            L::narrow::<S>(b, e),
+            L::narrow::<S>(c, f),
+        ];
+        (samples, 0)
     }
 }

@@ -3,7 +3,7 @@
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::shade::caster::Caster;
 use crate::tracer::scanline::shade::sphere::SphereConstants;
-use crate::tracer::scanline::write::paint::PaintNumber;
+use crate::tracer::scanline::write::paint::Paint;
 
 /// A sphere that is shaded, with its casters and its colours.
 pub(crate) struct ShadedSphere<'f> {
@@ -14,5 +14,5 @@ pub(crate) struct ShadedSphere<'f> {
     /// The decision of its pixels in the light.
     pub(crate) in_light: Decision,
     /// The paint of its pixels in shadow.
-    pub(crate) in_shadow: PaintNumber,
+    pub(crate) in_shadow: Paint,
 }

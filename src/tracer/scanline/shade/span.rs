@@ -7,16 +7,18 @@ use crate::tracer::ladder::Pixels;
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of};
 use crate::tracer::scanline::shade::policy::{Certified, Precision};
-use crate::tracer::scanline::shade::run::{Run, RunColumns, RunScratch, shade};
+use crate::tracer::scanline::shade::run::{Run, RunColumns, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::write::paint::Paint;
 use crate::tracer::scanline::write::row_writer::RowWriter;
 
 /// What the shading of spheres needs, kept from span to span.
 #[derive(Default)]
 pub(crate) struct SpanShader {
     cache: SphereCache,
-    scratch: RunScratch,
+    /// The casters that may cast a shadow on any pixel of a run.
+    casters: Vec<usize>,
+    /// The columns left in doubt.
+    doubts: Vec<u32>,
 }
 
 impl SpanShader {
@@ -25,30 +27,29 @@ impl SpanShader {
         self.cache.begin(count);
     }
 
-    /// Writes columns that show a sphere; `in_shadow` is its paint in shadow.
+    /// Writes columns that show a sphere.
     pub(crate) fn shade<'r>(
         &mut self,
         writer: &mut RowWriter<'r>,
         columns: Columns,
-        shaded: &ShadedSphere<'_>,
-        in_shadow: &'r Paint,
+        shaded: &'r ShadedSphere<'_>,
         pixels: &dyn Pixels,
     ) {
         // Its columns would take longer than its pixels.
         if shaded.constants.is_small && writer.precision == Precision::Certified {
-            self.shade_run(writer, columns, shaded, None, in_shadow);
+            self.shade_run(writer, columns, shaded, None);
             self.decide_doubts(writer, pixels);
             return;
         }
         let sphere = self.cache.of(shaded, writer.row, writer.level, writer.grid);
         let shadeable = both(columns, sphere.shadeable);
-        self.scratch.doubts.extend(columns.0..shadeable.0);
-        self.scratch.doubts.extend(shadeable.1..columns.1);
+        self.doubts.extend(columns.0..shadeable.0);
+        self.doubts.extend(shadeable.1..columns.1);
         match sphere.facing {
             _ if !shaded.constants.has_shadows => {
-                self.shade_run(writer, shadeable, shaded, Some((&sphere, true)), in_shadow);
+                self.shade_run(writer, shadeable, shaded, Some((&sphere, true)));
             }
-            None => self.shade_run(writer, shadeable, shaded, Some((&sphere, false)), in_shadow),
+            None => self.shade_run(writer, shadeable, shaded, Some((&sphere, false))),
             Some((inside, inside_faces)) => {
                 let inside = both(shadeable, inside);
                 let parts = [
@@ -59,14 +60,8 @@ impl SpanShader {
                 for (columns, faces) in parts {
                     match faces {
                         _ if columns.0 == columns.1 => {}
-                        true => self.shade_run(
-                            writer,
-                            columns,
-                            shaded,
-                            Some((&sphere, true)),
-                            in_shadow,
-                        ),
-                        false => writer.fill(columns, in_shadow),
+                        true => self.shade_run(writer, columns, shaded, Some((&sphere, true))),
+                        false => writer.fill(columns, &shaded.in_shadow),
                     }
                 }
             }
@@ -76,8 +71,8 @@ impl SpanShader {
 
     /// Decides the columns left in doubt.
     fn decide_doubts(&mut self, writer: &mut RowWriter<'_>, pixels: &dyn Pixels) {
-        if !self.scratch.doubts.is_empty() {
-            writer.decide(self.scratch.doubts.drain(..), pixels);
+        if !self.doubts.is_empty() {
+            writer.decide(self.doubts.drain(..), pixels);
         }
     }
 
@@ -89,49 +84,57 @@ impl SpanShader {
         columns: Columns,
         shaded: &ShadedSphere<'_>,
         known: Option<(&SphereColumns, bool)>,
-        in_shadow: &Paint,
     ) {
         if columns.0 == columns.1 {
             return;
         }
         writer.mark_written();
-        let casters_near = &mut self.scratch.casters;
-        casters_near.clear();
-        match known {
-            None => casters_near.extend(0..shaded.casters.len()),
-            Some((sphere, _)) if sphere.casters != 0 => {
-                let x = |column| writer.grid.coordinate(column);
-                let ends = (x(columns.0), x(columns.1 - 1));
-                let hits = shaded.constants.hit_box(ends, (writer.y, writer.y));
-                let casters = shaded.casters.iter().enumerate();
-                let near = casters.filter(|(number, caster)| {
-                    sphere.casters & bit_of(*number) != 0
-                        && !caster.misses(shaded.constants.lighting, &hits)
-                });
-                casters_near.extend(near.map(|(number, _)| number));
-            }
-            Some(_) => {}
+        if let Some((sphere, _)) = known {
+            self.find_casters(writer, columns, shaded, sphere.casters);
         }
         let range = writer.pixels(columns);
         let mut run = Run {
             grid: writer.grid,
             y: writer.y,
             from: columns.0,
+            count: range.len(),
             columns: known.map(|(sphere, _)| RunColumns {
                 zones: sphere.zones,
                 bright: sphere.bright,
             }),
             is_facing: known.map_or(!shaded.constants.has_shadows, |(_, is_facing)| is_facing),
-            samples: &mut writer.samples[3 * range.start..3 * range.end],
+            casters: known.map(|_| &*self.casters),
+            samples: &mut writer.samples[3 * range.start..],
             decisions: writer.decisions.as_mut().map(|all| &mut all[range]),
-            in_shadow,
-            scratch: &mut self.scratch,
+            doubts: &mut self.doubts,
         };
         dispatch!(writer.level, simd => match writer.precision {
             Precision::Certified => shade::<_, Certified>(simd, shaded, &mut run),
             Precision::Double => shade::<_, f64>(simd, shaded, &mut run),
             Precision::Single => shade::<_, f32>(simd, shaded, &mut run),
         });
+    }
+
+    /// Finds the casters that may cast a shadow on any of some columns, out of those whose bits are
+    /// set in `near`.
+    fn find_casters(
+        &mut self,
+        writer: &RowWriter<'_>,
+        columns: Columns,
+        shaded: &ShadedSphere<'_>,
+        near: u64,
+    ) {
+        self.casters.clear();
+        if near == 0 {
+            return;
+        }
+        let ends = [columns.0, columns.1 - 1].map(|column| writer.grid.coordinate(column));
+        let hits = shaded.constants.hit_box(ends.into(), (writer.y, writer.y));
+        let casters = shaded.casters.iter().enumerate();
+        let casters = casters.filter(|(number, caster)| {
+            near & bit_of(*number) != 0 && !caster.misses(shaded.constants.lighting, &hits)
+        });
+        self.casters.extend(casters.map(|(number, _)| number));
     }
 }
 

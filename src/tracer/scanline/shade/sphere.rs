@@ -115,18 +115,11 @@ fn sizes(factors: &[Bounded; 3]) -> [(f64, f64); 3] {
 pub(crate) struct SphereHighlight {
     /// n·h.
     pub(crate) form: LinearForm,
-    /// In each zone, a bound on n times the error of 1 − n·h: a constant and a factor of 1 − n·h.
+    /// In each zone, a bound on n times the error of 1 − n·h, times the largest coefficient of any
+    /// channel: a constant and a factor of 1 − n·h.
     pub(crate) errors: [[f64; 2]; ZONES],
     /// The largest difference of m/R and that of h at which there is a highlight.
     pub(crate) max_distance: f64,
-}
-
-impl SphereHighlight {
-    /// Whether a row may have a highlight, in which m/R is `m`.
-    pub(crate) fn reaches(&self, m: f64, lighting: &Lighting) -> bool {
-        // |n − h| is no less than its component along the axis of m.
-        (m - lighting.highlight.halfway[1]).abs() <= self.max_distance
-    }
 }
 
 /// The centre of a sphere, and bounds on q, m and s of any pixel.
@@ -282,14 +275,10 @@ pub(crate) struct SphereConstants<'f> {
 /// The coefficients of ambient + diffuse · max(0, n·l) + specular · max(0, n·h)ⁿ, times the
 /// sphere's colour.
 pub(crate) struct Coefficients {
-    pub(crate) ambient: Cycle,
-    pub(crate) diffuse: Cycle,
-    pub(crate) specular: Cycle,
+    pub(crate) ambient: [f64; 3],
+    pub(crate) diffuse: [f64; 3],
+    pub(crate) specular: [f64; 3],
 }
-
-/// Red, green, blue, red and so on, as samples lie in memory: long enough for a vector of 8 lanes
-/// that begins with any channel.
-pub(crate) type Cycle = [f64; 8 + 2];
 
 impl<'f> SphereConstants<'f> {
     /// `bounds` are those of the sphere, `color` is its colour, in the mirror times the
@@ -306,7 +295,7 @@ impl<'f> SphereConstants<'f> {
         let to_light = lighting.to_light_unit.map(|part| divisor.divide(part));
         let n_dot_l = bounds.form(to_light);
         let highlight = &lighting.highlight;
-        let sphere_highlight = lighting
+        let mut sphere_highlight = lighting
             .halfway
             .map(|h| bounds.highlight(h, highlight, sphere.radius, divisor));
         // A power below 2⁻⁵⁹ is left out, or replaced by 2⁻⁵⁹. The form tells such powers, if its
@@ -337,12 +326,18 @@ impl<'f> SphereConstants<'f> {
             channel(color.y, green),
             channel(color.z, blue),
         ];
+        if let Some(highlight) = &mut sphere_highlight {
+            let largest = channels.iter().fold(0.0_f64, |a, [.., s]| a.max(s.abs()));
+            highlight.errors = highlight
+                .errors
+                .map(|error| error.map(|part| part * largest));
+        }
         // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three products round,
-        // and then two products and two sums.
+        // then two products and two sums, and at last the sum of a sample and its bound.
         let errors = bounds
             .errors(sizes(&to_light))
             .map(|light| ((1.1 + light) * carried + diffuse * light + rest) * INFLATION);
-        let cycle = |part: usize| std::array::from_fn(|sample| channels[sample % 3][part]);
+        let part = |part: usize| channels.map(|channel| channel[part]);
         SphereConstants {
             center_x: sphere.center.x.value(),
             squared_radius: outline.squared_radius,
@@ -355,9 +350,9 @@ impl<'f> SphereConstants<'f> {
             inverse_radius: 1.0 / sphere.radius.value(),
             highlight: sphere_highlight,
             color: Coefficients {
-                ambient: cycle(0),
-                diffuse: cycle(1),
-                specular: cycle(2),
+                ambient: part(0),
+                diffuse: part(1),
+                specular: part(2),
             },
             errors,
             is_small: bounds.radius < SMALL,

@@ -8,7 +8,7 @@ use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
-use crate::tracer::scanline::shade::run::{Run, RunColumns, RunScratch, shade};
+use crate::tracer::scanline::shade::run::{Run, RunColumns, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::tests::{each_frame, lit};
 
@@ -48,38 +48,43 @@ fn check(
             (from, to) = (from.saturating_sub(1), (to + 1).min(SIZE));
         }
         let count = (to - from) as usize;
-        let mut samples = vec![0.0; 3 * count];
+        // What follows the run stays as it is.
+        let after = 3 * (row as usize % 20);
+        let mut samples = vec![2.0; 3 * count + after];
         let mut decisions = vec![Decision::Background; count];
-        let mut scratch = RunScratch::default();
+        let mut doubts = Vec::new();
         let x = [from, to - 1].map(|column| frame.grid.coordinate(column));
         let y = frame.grid.coordinate(row);
         let hits = shaded.constants.hit_box((x[0], x[1]), (y, y));
         let casters = shaded.casters.iter().enumerate();
-        let casters = casters
-            .filter(|(_, caster)| !only_near || !caster.misses(shaded.constants.lighting, &hits));
-        scratch.casters.extend(casters.map(|(number, _)| number));
-        counts.missing += shaded.casters.len() - scratch.casters.len();
+        let casters: Vec<_> = casters
+            .filter(|(_, caster)| !only_near || !caster.misses(shaded.constants.lighting, &hits))
+            .map(|(number, _)| number)
+            .collect();
+        counts.missing += shaded.casters.len() - casters.len();
         let mut run = Run {
             grid: frame.grid,
             y,
             from,
+            count,
             columns: by_columns.then_some(RunColumns {
                 zones: columns.zones,
                 bright: columns.bright,
             }),
             is_facing: !shaded.constants.has_shadows,
+            casters: only_near.then_some(&casters),
             samples: &mut samples,
             decisions: Some(&mut decisions),
-            in_shadow: &frame.paints[shaded.in_shadow],
-            scratch: &mut scratch,
+            doubts: &mut doubts,
         };
         dispatch!(level, simd => shade::<_, Certified>(simd, shaded, &mut run));
+        assert!(samples[3 * count..].iter().all(|&sample| sample == 2.0));
         for (column, (samples, decided)) in (from..).zip(samples.chunks(3).zip(decisions)) {
             let ((decision, color), _) = tracer.pixels.pixel(column, row);
             if lit(decision) != shaded.in_light {
                 continue;
             }
-            if scratch.doubts.contains(&column) {
+            if doubts.contains(&column) {
                 counts.in_doubt += 1;
                 continue;
             }

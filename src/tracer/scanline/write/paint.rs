@@ -64,8 +64,13 @@ impl<'f, 'c> Paints<'f, 'c> {
         }
     }
 
+    /// The paint of a decision.
+    pub(crate) fn of(&self, decision: Decision) -> Paint {
+        Paint::new(decision, (self.color)(decision))
+    }
+
     pub(crate) fn add(&mut self, decision: Decision) -> PaintNumber {
-        self.all.push(Paint::new(decision, (self.color)(decision)));
+        self.all.push(self.of(decision));
         PaintNumber(self.all.len() as u32 - 1)
     }
 

@@ -3,6 +3,33 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+/// A bit for each sample of 16 pixels: whether it is red.
+const RED: u64 = 0o1_111_111_111_111_111;
+
+/// The samples of pixels as they lie in memory, in as many vectors as there are channels.
+#[inline(always)]
+pub(crate) fn interleaved<S: Simd>(simd: S, [red, green, blue]: [S::f32s; 3]) -> [S::f32s; 3] {
+    let (mut samples, greens, blues) = (spread(red), spread(green), spread(blue));
+    for (i, sample) in samples.iter_mut().enumerate() {
+        let is_green = S::mask32s::from_bitmask(simd, RED << 1 >> (i * S::f32s::LEN));
+        let is_blue = S::mask32s::from_bitmask(simd, RED << 2 >> (i * S::f32s::LEN));
+        *sample = is_blue.select(blues[i], is_green.select(greens[i], *sample));
+    }
+    samples
+}
+
+/// The number of each pixel three times, once for each of its samples.
+#[inline(always)]
+fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
+    let mut samples = [pixels; 3];
+    for (i, vector) in samples.iter_mut().enumerate() {
+        for (lane, sample) in vector.as_mut_slice().iter_mut().enumerate() {
+            *sample = pixels.as_slice()[(i * V::LEN + lane) / 3];
+        }
+    }
+    samples
+}
+
 /// Stores the first `count` of the pixels in three vectors. The processor cannot predict how many,
 /// so no branch depends on it: what follows them in memory is stored again.
 #[inline(always)]
