@@ -249,7 +249,11 @@ impl Case<'_> {
             let x = self.grid.coordinate(first);
             let hits = in_row.hits(x);
             let facing = in_row.value(&constants.n_dot_l, &hits);
-            let zones = [0, 1, 2].map(|zone| in_row.lit(&hits, facing, (zone, u64::MAX)));
+            let zones = [0, 1, 2].map(|zone| {
+                let mut samples = in_row.lit(facing, zone);
+                in_row.add_highlight(&mut samples, &hits, (zone, u64::MAX));
+                samples
+            });
             let forms = self.forms.map(|form| in_row.value(&form, &hits));
             self.check_classes(&in_row, &hits);
             for lane in 0..S::f64s::LEN {

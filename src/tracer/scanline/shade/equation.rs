@@ -146,15 +146,10 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         Mask::<S, P>::splat(self.simd, all)
     }
 
-    /// Samples of pixels in the light: ambient + diffuse · max(0, n·l) + specular · (n·h)ⁿ. `light`
-    /// is their n·l; `bright` has a bit for each that may have a highlight.
+    /// Samples of pixels in the light without a highlight: ambient + diffuse · max(0, n·l). `light`
+    /// is their n·l.
     #[inline(always)]
-    pub(crate) fn lit(
-        &self,
-        hits: &Hits<LaneVector<S, P>>,
-        light: LaneVector<S, P>,
-        (zone, bright): (usize, u64),
-    ) -> Samples<LaneVector<S, P>> {
+    pub(crate) fn lit(&self, light: LaneVector<S, P>, zone: usize) -> Samples<LaneVector<S, P>> {
         let color = &self.sphere.color;
         let light = light.max(P::Lane::of(0.0));
         let mut channels = [light; 3];
@@ -163,18 +158,29 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
             let diffuse = splat::<S, P>(self.simd, color.diffuse[i]);
             channels[i] = P::product_plus(light, diffuse, ambient);
         }
-        let mut error = splat::<S, P>(self.simd, self.sphere.errors[zone]);
-        if let Some(highlight) = &self.sphere.highlight
-            && bright != 0
-        {
-            let (power, specular_error) = self.highlight(highlight, hits, (zone, bright));
-            for i in 0..3 {
-                let specular = splat::<S, P>(self.simd, color.specular[i]);
-                channels[i] = P::product_plus(power, specular, channels[i]);
-            }
-            error = error + specular_error;
+        Samples {
+            channels,
+            error: splat::<S, P>(self.simd, self.sphere.errors[zone]),
         }
-        Samples { channels, error }
+    }
+
+    /// Adds specular · (n·h)ⁿ to samples. `bright` has a bit for each pixel that may have a
+    /// highlight.
+    #[inline(always)]
+    pub(crate) fn add_highlight(
+        &self,
+        samples: &mut Samples<LaneVector<S, P>>,
+        hits: &Hits<LaneVector<S, P>>,
+        (zone, bright): (usize, u64),
+    ) {
+        if let Some(highlight) = &self.sphere.highlight {
+            let (power, error) = self.highlight(highlight, hits, (zone, bright));
+            for i in 0..3 {
+                let specular = splat::<S, P>(self.simd, self.sphere.color.specular[i]);
+                samples.channels[i] = P::product_plus(power, specular, samples.channels[i]);
+            }
+            samples.error = samples.error + error;
+        }
     }
 
     /// (n·h)ⁿ of the bright pixels, and a bound on the error of the highlight in any channel.

@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::equation::{Classes, Hits, RowShader};
-use crate::tracer::scanline::shade::policy::{LaneVector, Policy, Samples};
+use crate::tracer::scanline::shade::policy::{LaneVector, Policy};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::ZONES;
 use crate::tracer::scanline::write::pixels::{interleaved, store};
@@ -45,22 +45,9 @@ pub(crate) struct Run<'r> {
     pub(crate) doubts: &'r mut Vec<u32>,
 }
 
-/// Some pixels of a run: their samples in the light, and a bit for each that tells whether it is in
-/// shadow, and whether that is in doubt.
-struct Part<S: Simd, P: Policy<S>> {
-    samples: Samples<LaneVector<S, P>>,
-    in_shadow: u64,
-    in_doubt: u64,
-}
-
-impl<S: Simd, P: Policy<S>> Clone for Part<S, P> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S: Simd, P: Policy<S>> Copy for Part<S, P> {}
+/// One number for each pixel that a turn shades: in two vectors, of which the second is not used
+/// where one holds all.
+type Pair<V> = [V; 2];
 
 // No closures below: only what is inlined into a dispatch is compiled with the instructions of its
 // level, and closures that are given to other functions are not.
@@ -69,95 +56,93 @@ impl<S: Simd, P: Policy<S>> Copy for Part<S, P> {}
 // show cannot be predicted.
 
 impl Run<'_> {
-    /// The hits of the pixels from number `first` on, in two vectors if one does not hold all.
+    /// The hits of the pixels from number `first` on.
     #[inline(always)]
     fn hits<S: Simd, P: Policy<S>>(
         &self,
         row: &RowShader<'_, S, P>,
         first: usize,
-    ) -> [Hits<LaneVector<S, P>>; 2] {
+    ) -> Pair<Hits<LaneVector<S, P>>> {
         let lanes = LaneVector::<S, P>::LEN;
         let x = self.grid.coordinate(self.from + first as u32);
         let mut hits = [row.hits(x); 2];
-        if lanes < S::f32s::LEN && first + lanes < self.count {
+        if halves::<S, P>() == 2 && first + lanes < self.count {
             hits[1] = row.hits(x + PIXEL * lanes as f64);
         }
         hits
     }
 
-    /// Shades pixels with these hits: the first of them, as many as `here`, are of the run.
-    #[inline(always)]
-    fn part<S: Simd, P: Policy<S>>(
-        &self,
-        row: &RowShader<'_, S, P>,
-        shaded: &ShadedSphere<'_>,
-        hits: &Hits<LaneVector<S, P>>,
-        (here, known): (usize, Option<Classes>),
-    ) -> Part<S, P> {
-        let light = row.value(&shaded.constants.n_dot_l, hits);
-        let (in_shadow, in_doubt) = self.shadowed(row, shaded, hits, light);
-        let Classes {
-            zone,
-            bright,
-            beyond,
-        } = match known {
-            Some(classes) => classes,
-            None => row.classify(hits, first_bits(here)),
-        };
-        Part {
-            samples: row.lit(hits, light, (zone, bright)),
-            in_shadow: in_shadow & !beyond,
-            in_doubt: in_doubt | beyond,
-        }
-    }
-
-    /// A bit for each pixel: whether it is in shadow, and whether that is in doubt. `light` is their
-    /// n·l.
+    /// A bit for each of the pixels with these hits, as many as `here`: whether it is in shadow, and
+    /// whether that is in doubt. `lights` is their n·l.
     #[inline(always)]
     fn shadowed<S: Simd, P: Policy<S>>(
         &self,
         row: &RowShader<'_, S, P>,
         shaded: &ShadedSphere<'_>,
-        hits: &Hits<LaneVector<S, P>>,
-        light: LaneVector<S, P>,
+        (here, hits): (usize, &Pair<Hits<LaneVector<S, P>>>),
+        lights: &Pair<LaneVector<S, P>>,
     ) -> (u64, u64) {
-        let (mut dark, mut lit) = (row.mask(false), row.mask(true));
+        if self.is_facing && self.casters.is_some_and(<[usize]>::is_empty) {
+            return (0, 0);
+        }
+        let (mut dark, mut lit) = ([row.mask(false); 2], [row.mask(true); 2]);
         if !self.is_facing {
-            (dark, lit) = P::is_not_negative(-light, shaded.constants.n_dot_l.error);
-        }
-        match self.casters {
-            Some(casters) => {
-                for &caster in casters {
-                    let (behind, free) = row.behind(&shaded.casters[caster], hits);
-                    dark |= behind;
-                    lit &= free;
-                }
-            }
-            None => {
-                for caster in shaded.casters {
-                    let (behind, free) = row.behind(caster, hits);
-                    dark |= behind;
-                    lit &= free;
-                }
+            for half in 0..halves::<S, P>() {
+                let error = shaded.constants.n_dot_l.error;
+                (dark[half], lit[half]) = P::is_not_negative(-lights[half], error);
             }
         }
-        (dark.to_bitmask(), (!(dark | lit)).to_bitmask())
+        let count = self.casters.map_or(shaded.casters.len(), <[usize]>::len);
+        for i in 0..count {
+            let caster = &shaded.casters[self.casters.map_or(i, |casters| casters[i])];
+            for half in 0..halves::<S, P>() {
+                // The second vector of a short run holds none of its pixels.
+                if half * LaneVector::<S, P>::LEN >= here {
+                    break;
+                }
+                let (behind, free) = row.behind(caster, &hits[half]);
+                dark[half] |= behind;
+                lit[half] &= free;
+            }
+        }
+        let (mut in_shadow, mut in_doubt) = (0, 0);
+        for half in 0..halves::<S, P>() {
+            let shift = half * LaneVector::<S, P>::LEN;
+            in_shadow |= dark[half].to_bitmask() << shift;
+            in_doubt |= (!(dark[half] | lit[half])).to_bitmask() << shift;
+        }
+        (in_shadow, in_doubt)
     }
 
     /// What is known of the pixels from number `first` on, as many as `here`.
     #[inline(always)]
-    fn classes<S: Simd>(&self, first: usize, here: usize) -> Option<Classes> {
-        let RunColumns { zones, bright } = self.columns?;
+    fn classify<S: Simd, P: Policy<S>>(
+        &self,
+        row: &RowShader<'_, S, P>,
+        (first, here): (usize, usize),
+        hits: &Pair<Hits<LaneVector<S, P>>>,
+    ) -> Classes {
+        let Some(RunColumns { zones, bright }) = self.columns else {
+            let lanes = LaneVector::<S, P>::LEN;
+            let mut classes = row.classify(&hits[0], first_bits(here.min(lanes)));
+            if halves::<S, P>() == 2 {
+                let second = row.classify(&hits[1], first_bits(here) >> lanes);
+                classes.zone = classes.zone.max(second.zone);
+                classes.bright |= second.bright << lanes;
+                classes.beyond |= second.beyond << lanes;
+            }
+            return classes;
+        };
         let begin = self.from + first as u32;
         let is_out = |(from, to): Columns| begin < from || begin + here as u32 > to;
         let [innermost, inner] = zones;
         let (end, (from, to)) = (begin + S::f32s::LEN as u32, bright);
         let before = |column: u32| first_bits((column.clamp(begin, end) - begin) as usize);
-        Some(Classes {
+        Classes {
             zone: usize::from(is_out(innermost)) + usize::from(is_out(inner)),
             bright: before(to) & !before(from),
             beyond: 0,
-        })
+        }
     }
 
     /// Writes the decisions of pixels, whose bits in `in_shadow` tell which are dark.
@@ -173,6 +158,12 @@ impl Run<'_> {
             }
         }
     }
+}
+
+/// The number of vectors of a policy's floats that hold as many pixels as one of f32s.
+#[inline(always)]
+const fn halves<S: Simd, P: Policy<S>>() -> usize {
+    S::f32s::LEN / LaneVector::<S, P>::LEN
 }
 
 /// So many bits, fewer than 64.
@@ -200,18 +191,27 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             hits = run.hits(&row, next);
         }
         let here = width.min(run.count - first);
-        let mut known = run.classes::<S>(first, here);
-        let low = run.part(&row, shaded, &now[0], (here.min(lanes), known));
-        let mut high = low;
-        if here > lanes {
-            if let Some(classes) = &mut known {
-                classes.bright >>= lanes;
-            }
-            high = run.part(&row, shaded, &now[1], (here - lanes, known));
+        let mut lights = [row.value(&shaded.constants.n_dot_l, &now[0]); 2];
+        if halves::<S, P>() == 2 {
+            lights[1] = row.value(&shaded.constants.n_dot_l, &now[1]);
         }
+        let (in_shadow, in_doubt) = run.shadowed(&row, shaded, (here, &now), &lights);
+        let Classes {
+            zone,
+            bright,
+            beyond,
+        } = run.classify(&row, (first, here), &now);
+        let mut samples = [row.lit(lights[0], zone), row.lit(lights[1], zone)];
+        for half in 0..halves::<S, P>() {
+            let bright = bright >> (half * lanes);
+            if bright != 0 {
+                row.add_highlight(&mut samples[half], &now[half], (zone, bright));
+            }
+        }
+        let [low, high] = samples;
         let all = first_bits(here);
-        let in_shadow = (low.in_shadow | high.in_shadow << lanes) & all;
-        let (mut samples, doubts) = P::round(low.samples, high.samples);
+        let in_shadow = in_shadow & !beyond & all;
+        let (mut samples, doubts) = P::round(low, high);
         let is_dark = S::mask32s::from_bitmask(simd, in_shadow);
         for (sample, dark) in samples.iter_mut().zip(in_shadow_color) {
             *sample = is_dark.select(S::f32s::splat(simd, dark), *sample);
@@ -223,8 +223,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             here,
         );
         run.write_decisions(shaded, first..first + here, in_shadow);
-        let in_doubt = low.in_doubt | high.in_doubt << lanes | doubts & !in_shadow;
-        let mut doubts = in_doubt & all;
+        let mut doubts = (in_doubt | beyond | doubts & !in_shadow) & all;
         while doubts != 0 {
             // Both vectors may doubt a pixel in which they overlap.
             let doubt = run.from + first as u32 + doubts.trailing_zeros();
