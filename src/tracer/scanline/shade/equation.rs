@@ -153,10 +153,10 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
         let color = &self.sphere.color;
         let light = light.max(P::Lane::of(0.0));
         let mut channels = [light; 3];
-        for i in 0..3 {
+        for (i, channel) in channels.iter_mut().enumerate() {
             let ambient = splat::<S, P>(self.simd, color.ambient[i]);
             let diffuse = splat::<S, P>(self.simd, color.diffuse[i]);
-            channels[i] = P::product_plus(light, diffuse, ambient);
+            *channel = P::product_plus(light, diffuse, ambient);
         }
         Samples {
             channels,
@@ -179,7 +179,7 @@ impl<'s, S: Simd, P: Policy<S>> RowShader<'s, S, P> {
                 let specular = splat::<S, P>(self.simd, self.sphere.color.specular[i]);
                 samples.channels[i] = P::product_plus(power, specular, samples.channels[i]);
             }
-            samples.error = samples.error + error;
+            samples.error += error;
         }
     }
 

@@ -158,6 +158,20 @@ impl Run<'_> {
             }
         }
     }
+
+    /// Notes the pixels in doubt: their bits, from pixel `first` on. All pixels before `done` were
+    /// noted in turns before.
+    #[inline(always)]
+    fn note_doubts(&mut self, first: usize, done: usize, mut doubts: u64) {
+        while doubts != 0 {
+            // Both vectors may doubt a pixel in which they overlap.
+            let doubt = self.from + first as u32 + doubts.trailing_zeros();
+            if doubt >= self.from + done as u32 || !self.doubts.contains(&doubt) {
+                self.doubts.push(doubt);
+            }
+            doubts &= doubts - 1;
+        }
+    }
 }
 
 /// The number of vectors of a policy's floats that hold as many pixels as one of f32s.
@@ -223,15 +237,7 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
             here,
         );
         run.write_decisions(shaded, first..first + here, in_shadow);
-        let mut doubts = (in_doubt | beyond | doubts & !in_shadow) & all;
-        while doubts != 0 {
-            // Both vectors may doubt a pixel in which they overlap.
-            let doubt = run.from + first as u32 + doubts.trailing_zeros();
-            if doubt >= run.from + done as u32 || !run.doubts.contains(&doubt) {
-                run.doubts.push(doubt);
-            }
-            doubts &= doubts - 1;
-        }
+        run.note_doubts(first, done, (in_doubt | beyond | doubts & !in_shadow) & all);
         done = first + here;
         first = next;
     }
