@@ -160,7 +160,8 @@ mod tests {
         for level in [Level::new(), Level::baseline()] {
             for length in (0..80).chain([150, 299, 300, 301]) {
                 for start in 0..20 {
-                    let mut samples = vec![1.0; start + 3 * length + 20];
+                    // With room for whole vectors after the span, and without.
+                    let mut samples = vec![1.0; start + 3 * length + 3 * start];
                     dispatch!(level, simd => fill(simd, &mut samples[start..], length, &paint));
                     for (index, sample) in samples.into_iter().enumerate() {
                         let expected = match index.checked_sub(start) {
