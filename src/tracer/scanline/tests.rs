@@ -105,7 +105,7 @@ pub(super) const CROWDED_WITHOUT_MEMORY: Crowd = Crowd {
 };
 
 /// No frame is one of a crowd.
-const NOT_CROWDED: Crowd = Crowd {
+pub(super) const NOT_CROWDED: Crowd = Crowd {
     cull_from: u64::MAX,
     low_from: f64::INFINITY,
     late_from: u64::MAX,

@@ -85,12 +85,13 @@ pub(crate) trait Policy<S: Simd> {
         highlight
     }
 
-    /// Samples rounded to f32, and a bit for each pixel in doubt. `high` holds the pixels for which
-    /// `low` has no room.
+    /// Samples rounded to f32, and those of each channel that are certain. `high` holds the pixels
+    /// for which `low` has no room.
     fn round(
+        simd: S,
         low: Samples<LaneVector<S, Self>>,
         high: Samples<LaneVector<S, Self>>,
-    ) -> ([S::f32s; 3], u64);
+    ) -> ([S::f32s; 3], [S::mask32s; 3]);
 }
 
 /// f64 with bounds.
@@ -110,7 +111,11 @@ impl<S: Simd> Policy<S> for Certified {
     }
 
     #[inline(always)]
-    fn round(low: Samples<S::f64s>, high: Samples<S::f64s>) -> ([S::f32s; 3], u64) {
+    fn round(
+        _: S,
+        low: Samples<S::f64s>,
+        high: Samples<S::f64s>,
+    ) -> ([S::f32s; 3], [S::mask32s; 3]) {
         let [a, b, c] = low.channels;
         let [d, e, f] = high.channels;
         let lower = [
@@ -124,9 +129,12 @@ impl<S: Simd> Policy<S> for Certified {
             f64::narrow::<S>(c + low.error, f + high.error),
         ];
         // A NaN is not equal to itself, so it is in doubt, too.
-        let is_certain =
-            lower[0].simd_eq(upper[0]) & lower[1].simd_eq(upper[1]) & lower[2].simd_eq(upper[2]);
-        (upper, (!is_certain).to_bitmask())
+        let are_certain = [
+            lower[0].simd_eq(upper[0]),
+            lower[1].simd_eq(upper[1]),
+            lower[2].simd_eq(upper[2]),
+        ];
+        (upper, are_certain)
     }
 }
 
@@ -175,7 +183,11 @@ impl<S: Simd, L: Lane> Policy<S> for L {
     }
 
     #[inline(always)]
-    fn round(low: Samples<L::Vector<S>>, high: Samples<L::Vector<S>>) -> ([S::f32s; 3], u64) {
+    fn round(
+        simd: S,
+        low: Samples<L::Vector<S>>,
+        high: Samples<L::Vector<S>>,
+    ) -> ([S::f32s; 3], [S::mask32s; 3]) {
         let [a, b, c] = low.channels;
         let [d, e, f] = high.channels;
         let samples = [
@@ -183,6 +195,6 @@ impl<S: Simd, L: Lane> Policy<S> for L {
             L::narrow::<S>(b, e),
             L::narrow::<S>(c, f),
         ];
-        (samples, 0)
+        (samples, [S::mask32s::splat(simd, true); 3])
     }
 }

@@ -225,7 +225,16 @@ pub(crate) fn shade<S: Simd, P: Policy<S>>(simd: S, shaded: &ShadedSphere<'_>, r
         let [low, high] = samples;
         let all = first_bits(here);
         let in_shadow = in_shadow & !beyond & all;
-        let (mut samples, doubts) = P::round(low, high);
+        let (mut samples, mut are_certain) = P::round(simd, low, high);
+        if let Some(is_absent) = shaded.constants.color.is_absent {
+            for channel in 0..3 {
+                if is_absent[channel] {
+                    samples[channel] = S::f32s::splat(simd, 0.0);
+                    are_certain[channel] = S::mask32s::splat(simd, true);
+                }
+            }
+        }
+        let doubts = (!(are_certain[0] & are_certain[1] & are_certain[2])).to_bitmask();
         let is_dark = S::mask32s::from_bitmask(simd, in_shadow);
         for (sample, dark) in samples.iter_mut().zip(in_shadow_color) {
             *sample = is_dark.select(S::f32s::splat(simd, dark), *sample);

@@ -278,6 +278,9 @@ pub(crate) struct Coefficients {
     pub(crate) ambient: [f64; 3],
     pub(crate) diffuse: [f64; 3],
     pub(crate) specular: [f64; 3],
+    /// If the colour, or the light, does not have some channel, whether it does not have each: then
+    /// its samples are 0 without error.
+    pub(crate) is_absent: Option<[bool; 3]>,
 }
 
 impl<'f> SphereConstants<'f> {
@@ -337,6 +340,10 @@ impl<'f> SphereConstants<'f> {
         let errors = bounds
             .errors(sizes(&to_light))
             .map(|light| ((1.1 + light) * carried + diffuse * light + rest) * INFLATION);
+        let is_absent =
+            [(color.x, red), (color.y, green), (color.z, blue)].map(|(color, coefficients)| {
+                color.is_zero() || coefficients.iter().all(|coefficient| coefficient.is_zero())
+            });
         let part = |part: usize| channels.map(|channel| channel[part]);
         SphereConstants {
             center_x: sphere.center.x.value(),
@@ -353,6 +360,7 @@ impl<'f> SphereConstants<'f> {
                 ambient: part(0),
                 diffuse: part(1),
                 specular: part(2),
+                is_absent: is_absent.contains(&true).then_some(is_absent),
             },
             errors,
             is_small: bounds.radius < SMALL,

@@ -2,15 +2,15 @@
 
 use fearless_simd::{Level, dispatch};
 
+use crate::stage::Stage;
 use crate::tracer::decision::Decision;
-
 use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
 use crate::tracer::scanline::shade::policy::Certified;
 use crate::tracer::scanline::shade::run::{Run, RunColumns, shade};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
-use crate::tracer::scanline::tests::{each_frame, lit};
+use crate::tracer::scanline::tests::{NOT_CROWDED, each_frame, lit, with_tracer};
 
 const SIZE: u32 = 70;
 
@@ -131,5 +131,29 @@ fn what_is_certain_is_what_pixels_are_defined_to_show() {
             );
             assert!(missing > 1000, "{missing}");
         }
+    }
+}
+
+#[test]
+fn a_channel_that_a_sphere_does_not_have_is_certain() {
+    for color in ["1.0, 0.0, 0.0", "0.0, 1.0, 1.0", "0.0, 0.0, 0.0"] {
+        let scene =
+            format!("[[sphere]]\ncenter = [0.125, 0.0, 0.0]\nradius = 0.75\ncolor = [{color}]\n");
+        let frame = (Stage::Shadow, 0.3, SIZE);
+        let mut counts = Counts::default();
+        with_tracer(&scene, frame, NOT_CROWDED, |tracer| {
+            for appearance in tracer.frame.solids(false).appearance {
+                if let Appearance::Sphere(shaded) = appearance {
+                    check(tracer, shaded, true, (Level::new(), color), &mut counts);
+                }
+            }
+        });
+        let Counts {
+            certain, in_doubt, ..
+        } = counts;
+        assert!(
+            certain > 1000 && in_doubt < certain / 50,
+            "{color}: {certain}, {in_doubt}"
+        );
     }
 }
