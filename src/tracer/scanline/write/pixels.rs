@@ -30,8 +30,8 @@ fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
     samples
 }
 
-/// Stores the first `count` of the pixels in three vectors. The processor cannot predict how many,
-/// so no branch depends on it: what follows them in memory is stored again.
+/// Stores the first `count` of the pixels in three vectors. The processor can predict whether they
+/// are all, but not how many: so what follows them in memory is stored again.
 #[inline(always)]
 pub(crate) fn store<S: Simd>(simd: S, samples: &mut [f32], vectors: &[S::f32s; 3], count: usize) {
     let width = S::f32s::LEN;
@@ -41,6 +41,12 @@ pub(crate) fn store<S: Simd>(simd: S, samples: &mut [f32], vectors: &[S::f32s; 3
             vector.store_slice(&mut all[i * width..(i + 1) * width]);
         }
         samples[..3 * count].copy_from_slice(&all[..3 * count]);
+        return;
+    }
+    if count == width {
+        for (i, vector) in vectors.iter().enumerate() {
+            vector.store_slice(&mut samples[i * width..(i + 1) * width]);
+        }
         return;
     }
     let stored = (1_u64 << (3 * count)) - 1;
