@@ -64,7 +64,7 @@ impl Bounded {
 
     /// A number of the larger magnitude and the larger error of both; a NaN of this one is larger
     /// than all.
-    pub(crate) fn larger(self, other: Bounded) -> Bounded {
+    pub(crate) fn joined(self, other: Bounded) -> Bounded {
         let larger = |a: f64, b: f64| if a < b { b } else { a };
         Bounded {
             value: larger(self.value.abs(), other.value.abs()),

@@ -36,7 +36,8 @@ const FEW: u32 = 16;
 /// The most solids at a pixel that are sorted without tiles.
 const MOST: usize = 32;
 
-/// The rows of the bands that solids are put in the order of: about as many as are traced at a time.
+/// The rows of the bands in whose order solids are put: as many as `scanline` traces together. With
+/// another number, the order would serve it less well.
 const BAND: usize = 8;
 
 /// The extents of all solids.

@@ -38,15 +38,14 @@
 //!   creases and shadows are no active edges. They are prepared when a row first shows the solid
 //!   (`late_making`), since most solids of such a crowd are hidden, and kept in little memory
 //!   (`edges/coarse`), or made again in each band, since there may be millions.
-//! - `visibility/` resolves a gap: which regions cover it (`coverage`),
-//!   and which solid is in front by a separating plane (`separation`) or a depth test
-//!   (`depth_test`).
+//! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
+//!   by a separating plane (`separation`) or a depth test (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with
 //!   bounds on its errors for the certified kernel and without for the others (`policy`). The
 //!   columns of a sphere that face the light, and those that may have a highlight, are found first
 //!   (`columns`), except where there are so few that each finds out by itself.
-//! - `write/` fills spans of one paint, and leaves out what stands there from the frame before
-//!   (`history`).
+//! - `write/` fills spans of one paint (`paint`), stores few pixels and shaded ones (`pixels`), and
+//!   leaves out what stands there from the frame before (`history`).
 //!
 //! Edges and visibility are f64 with proven bounds for every kernel: a filter. Shading has bounds
 //! for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the

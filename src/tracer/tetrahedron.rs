@@ -39,13 +39,13 @@ pub(super) struct Tetrahedron<R> {
 /// enters, positive where it leaves, 0 where it runs along.
 pub(super) type FaceSigns = [Ordering; 4];
 
-/// The wall of a half-space that tells where lines of one direction meet a tetrahedron.
+/// The border of a half-space that tells where lines of one direction meet a tetrahedron.
 #[derive(Clone, Copy)]
 pub(super) enum Wall {
-    /// The plane of a face: f ≤ 0, or f < 0 where the half-space is not `closed`.
+    /// The plane of a face. The half-space is where f ≤ 0, or f < 0 if it is not `closed`.
     Face { face: usize, closed: bool },
-    /// The plane in which lines meet `EDGES[edge]`, with faces i < j: where its edge function is
-    /// not negative or, on the `opposite` side, not positive. If lines enter i and leave j, it is
+    /// The plane in which lines meet `EDGES[edge]`, with faces i < j. The half-space is where the
+    /// edge function is not negative or, if it is the `opposite` one, not positive. If lines enter i and leave j, it is
     /// not negative where t_i ≤ t_j; if they enter both, where t_i ≥ t_j.
     Edge { edge: usize, opposite: bool },
 }

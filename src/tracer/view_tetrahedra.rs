@@ -33,7 +33,7 @@ pub(super) struct TetrahedraInView<'f, R> {
 pub(super) struct TetrahedronInView<R> {
     pub(super) solid: Tetrahedron<R>,
     pub(super) eye_signs: FaceSigns,
-    /// c, at hand.
+    /// The colour, beside what decides a pixel: so that the scene need not be read.
     pub(super) color: DVec3,
 }
 

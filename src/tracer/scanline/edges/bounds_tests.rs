@@ -63,8 +63,9 @@ fn check_spheres(
     grid: Grid,
     shares: &mut Shares,
 ) {
+    let outlines = SphereOutlines::new(grid);
     for (sphere, exact) in bounded.view.spheres.iter().zip(truth.view.spheres) {
-        let outline = SphereOutlines::new(grid).of(sphere.center, sphere.radius);
+        let outline = outlines.of(sphere.center, sphere.radius);
         let depth = Depth::of_sphere(sphere.center, &outline, sphere.support, grid);
         for row in (0..SIZE).step_by(7) {
             let y = grid.coordinate(row);

@@ -96,9 +96,9 @@ impl Sizes {
     /// Sizes that both are within.
     fn joined(self, other: Sizes) -> Sizes {
         Sizes {
-            middle: self.middle.larger(other.middle),
-            m: self.m.larger(other.m),
-            squared_radius: self.squared_radius.larger(other.squared_radius),
+            middle: self.middle.joined(other.middle),
+            m: self.m.joined(other.m),
+            squared_radius: self.squared_radius.joined(other.squared_radius),
         }
     }
 }
@@ -112,17 +112,23 @@ struct ErrorBounds {
 }
 
 impl ErrorBounds {
-    const NONE: ErrorBounds = ErrorBounds {
-        m_error: 0.0,
-        chord_error: 0.0,
-        slack: 0.0,
+    /// Of an ellipse of which nothing is derived.
+    const UNKNOWN: ErrorBounds = ErrorBounds {
+        m_error: f64::INFINITY,
+        chord_error: f64::INFINITY,
+        slack: f64::INFINITY,
     };
 
-    /// Whether they leave hardly a column in doubt: an end of a chord moves by 2⁻³² of a column, and
-    /// by 2⁻¹⁶ of the longest chord where the chord is shortest.
-    fn are_narrow(&self, squared_radius: Bounded) -> bool {
+    /// Whether bounds for these sizes are nearly as good as its own for a smaller ellipse: they
+    /// leave hardly a column in doubt, since an end of a chord moves by 2⁻³² of a column, and by
+    /// 2⁻¹⁶ of the longest chord where the chord is shortest; and no radius is four times the other,
+    /// so that the bounds of the shader, which grow with `chord_error` over R², do not become four
+    /// times as wide.
+    fn serve(&self, sizes: Sizes, squared_radius: Bounded) -> bool {
         const NARROW: f64 = 1.0 / (1_u64 << 32) as f64;
-        self.chord_error <= NARROW * squared_radius.value() && self.slack <= NARROW
+        sizes.squared_radius.value() <= 16.0 * squared_radius.value()
+            && self.chord_error <= NARROW * squared_radius.value()
+            && self.slack <= NARROW
     }
 }
 
@@ -132,13 +138,13 @@ impl Ellipses {
             grid,
             middle_per_y,
             m_per_y,
-            derived: Cell::new((Sizes::NONE, ErrorBounds::NONE)),
+            derived: Cell::new((Sizes::NONE, ErrorBounds::UNKNOWN)),
         }
     }
 
     /// The ellipse with this middle and this m at Y = 0.
-    // Inlined, so that it is written where it is kept: the processor would wait long before it
-    // copies what was just written.
+    // Inlined, so that it is written where it is kept: a copy reads by wide loads what narrow stores
+    // have just written, which the processor cannot forward, so that it waits.
     #[inline(always)]
     fn ellipse(&self, middle: Bounded, m: Bounded, squared_radius: Bounded) -> Ellipse {
         let ErrorBounds {
@@ -170,14 +176,14 @@ impl Ellipses {
     #[inline(always)]
     fn bounds_of(&self, sizes: Sizes) -> ErrorBounds {
         let (held, bounds) = self.derived.get();
-        if !(sizes.is_within(held) && bounds.are_narrow(sizes.squared_radius)) {
+        if !(sizes.is_within(held) && bounds.serve(held, sizes.squared_radius)) {
             self.derive_bounds(sizes.middle, sizes.m, sizes.squared_radius);
         }
         self.derived.get().1
     }
 
-    /// Derives bounds for these sizes, and for those before, too, unless that makes them wide.
-    // Sizes by themselves and no result: these would be copied through memory.
+    /// Derives bounds for these sizes, and for those before, too, unless these differ much.
+    // The sizes come one by one, and no result goes: each would be copied, as above.
     #[inline(never)]
     fn derive_bounds(&self, middle: Bounded, m: Bounded, squared_radius: Bounded) {
         let sizes = Sizes {
@@ -187,7 +193,7 @@ impl Ellipses {
         };
         let joined = sizes.joined(self.derived.get().0);
         let mut derived = (joined, self.bounds(joined));
-        if !derived.1.are_narrow(squared_radius) {
+        if !derived.1.serve(joined, squared_radius) {
             derived = (sizes, self.bounds(sizes));
         }
         self.derived.set(derived);

@@ -56,7 +56,8 @@ impl Root {
         let ColumnEnclosure { possible, certain } = enclosure;
         let root_column = y * self.per_y + self.at;
         // No processor can predict on which side a half-plane lies: each bounds both ends, one of
-        // them at infinity.
+        // them at infinity. The root is finite, as `HalfPlane` made sure when it called the border
+        // sloping, so that no sum with infinity is a NaN.
         const BEYOND: [[f64; 2]; 2] = [[f64::INFINITY, 0.0], [0.0, f64::INFINITY]];
         let [left, right] = BEYOND[usize::from(self.rightward)];
         possible[0] = possible[0].max(root_column - (self.slack + left));

@@ -154,8 +154,8 @@ impl<'v, 'f> Outlines<'v, 'f> {
     }
 
     /// Calls `each` with the outlines of the solids of `numbers`. Those that are not culled are made
-    /// one by one, so that each is used while the processor has it at hand; and are not copied
-    /// before that, because the processor would wait until they are written.
+    /// one by one: each is used while the processor has it at hand, and without a copy, which would
+    /// wait for what was just written (`edges/ellipse.rs`).
     pub(crate) fn for_each(mut self, mut each: impl FnMut(Outlined<'f>)) {
         match self.culled.take() {
             Some(culled) => culled.into_iter().for_each(each),

@@ -319,8 +319,9 @@ fn check_view(
 ) {
     let grid = Grid::new(SIZE);
     let (view, true_view) = (bounded.1, truth.1);
+    let outlines = SphereOutlines::new(grid);
     for (index, sphere) in view.spheres.iter().enumerate() {
-        let outline = SphereOutlines::new(grid).of(sphere.center, sphere.radius);
+        let outline = outlines.of(sphere.center, sphere.radius);
         let color = bounded.0.solid_color(index) * bounded.2;
         let lighting = Lighting::new(&view.shading);
         let bounds = HitBounds::new(sphere, &outline);

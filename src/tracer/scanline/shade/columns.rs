@@ -227,7 +227,7 @@ fn store<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
     store_columns::<S>(ends[1], &mut intervals[1][lane..]);
 }
 
-// No closures below: see `shade/run.rs`.
+// No vectors in closures below: see `shade/run.rs`.
 
 impl<S: Simd> RowLanes<'_, S> {
     /// q in a column of each row.

@@ -20,7 +20,7 @@ pub(crate) struct Classes {
     pub(crate) beyond: u64,
 }
 
-// No closures below: see `shade/run.rs`.
+// No vectors in closures below: see `shade/run.rs`.
 
 /// The coordinates of the hits of neighbouring pixels; m is that of the row.
 #[derive(Clone, Copy)]

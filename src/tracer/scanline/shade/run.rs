@@ -49,8 +49,8 @@ pub(crate) struct Run<'r> {
 /// where one holds all.
 type Pair<V> = [V; 2];
 
-// No closures below: only what is inlined into a dispatch is compiled with the instructions of its
-// level, and closures that are given to other functions are not.
+// No vectors in closures below: only what is inlined into a dispatch is compiled with the
+// instructions of its level, and closures that are given to other functions are not.
 //
 // Few branches, too: most runs of a crowd are a few pixels at the border of a shadow, and what they
 // show cannot be predicted.

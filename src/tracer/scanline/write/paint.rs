@@ -14,7 +14,7 @@ use crate::tracer::scanline::write::pixels;
 pub(crate) struct Paint {
     pub(crate) decision: Decision,
     /// The three channels again and again: enough for a vector that begins with any of them.
-    samples: [f32; 16 + 2],
+    samples: [f32; pixels::MAX_LANES + 2],
 }
 
 impl Paint {
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn samples_are_filled_from_any_place_to_any_other() {
         let paint = Paint::new(Decision::Background, [0.25, 0.5, 0.75]);
-        for level in [Level::new(), Level::baseline()] {
+        for level in [Level::new(), Level::baseline(), Level::fallback()] {
             for length in (0..80).chain([150, 299, 300, 301]) {
                 for start in 0..20 {
                     // With room for whole vectors after the span, and without.

@@ -3,12 +3,16 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-/// A bit for each sample of 16 pixels: whether it is red.
+/// The most floats of a vector at any level.
+pub(crate) const MAX_LANES: usize = 16;
+
+/// A bit for each sample of [`MAX_LANES`] pixels: whether it is red.
 const RED: u64 = 0o1_111_111_111_111_111;
 
 /// The samples of pixels as they lie in memory, in as many vectors as there are channels.
 #[inline(always)]
 pub(crate) fn interleaved<S: Simd>(simd: S, [red, green, blue]: [S::f32s; 3]) -> [S::f32s; 3] {
+    const { assert!(S::f32s::LEN <= MAX_LANES) };
     let (mut samples, greens, blues) = (spread(red), spread(green), spread(blue));
     for (i, sample) in samples.iter_mut().enumerate() {
         let is_green = S::mask32s::from_bitmask(simd, RED << 1 >> (i * S::f32s::LEN));
@@ -36,7 +40,7 @@ fn spread<S: Simd, V: SimdFloat<S>>(pixels: V) -> [V; 3] {
 pub(crate) fn store<S: Simd>(simd: S, samples: &mut [f32], vectors: &[S::f32s; 3], count: usize) {
     let width = S::f32s::LEN;
     if samples.len() < 3 * width {
-        let mut all = [0.0; 3 * 16];
+        let mut all = [0.0; 3 * MAX_LANES];
         for (i, vector) in vectors.iter().enumerate() {
             vector.store_slice(&mut all[i * width..(i + 1) * width]);
         }
@@ -55,5 +59,35 @@ pub(crate) fn store<S: Simd>(simd: S, samples: &mut [f32], vectors: &[S::f32s; 3
         let is_stored = S::mask32s::from_bitmask(simd, stored >> (i * width));
         let after = S::f32s::from_slice(simd, place);
         is_stored.select(*vector, after).store_slice(place);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    #[inline(always)]
+    fn interleaved_numbers<S: Simd>(simd: S) -> Vec<f32> {
+        let numbers: [f32; MAX_LANES] = std::array::from_fn(|pixel| pixel as f32);
+        let red = S::f32s::from_slice(simd, &numbers[..S::f32s::LEN]);
+        let samples = interleaved(simd, [red, red + 100.0, red + 200.0]);
+        samples
+            .iter()
+            .flat_map(|vector| vector.as_slice().to_vec())
+            .collect()
+    }
+
+    #[test]
+    fn samples_lie_as_in_memory() {
+        for level in [Level::new(), Level::baseline(), Level::fallback()] {
+            let samples = dispatch!(level, simd => interleaved_numbers(simd));
+            assert!(!samples.is_empty());
+            for (index, sample) in samples.into_iter().enumerate() {
+                let expected = (index / 3 + 100 * (index % 3)) as f32;
+                assert_eq!(sample, expected, "{level:?}, {index}");
+            }
+        }
     }
 }
