@@ -45,8 +45,9 @@ pub(super) enum Wall {
     /// The plane of a face. The half-space is where f ≤ 0, or f < 0 if it is not `closed`.
     Face { face: usize, closed: bool },
     /// The plane in which lines meet `EDGES[edge]`, with faces i < j. The half-space is where the
-    /// edge function is not negative or, if it is the `opposite` one, not positive. If lines enter i and leave j, it is
-    /// not negative where t_i ≤ t_j; if they enter both, where t_i ≥ t_j.
+    /// edge function is not negative or, if it is the `opposite` one, not positive. If lines enter i
+    /// and leave j, the function is not negative where t_i ≤ t_j; if they enter both, where t_i ≥
+    /// t_j.
     Edge { edge: usize, opposite: bool },
 }
 
