@@ -7,9 +7,10 @@
 //!
 //! Samples stay the 32-bit floats that were traced: the texture is `RGB32F`, the shader fetches
 //! texels without filtering, and nothing blends, dithers or encodes them, so a float framebuffer
-//! holds them bit for bit and an 8-bit one holds `(clamp(c, 0, 1) * 255).round_ties_even()`. OpenGL
-//! leaves drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps
-//! all their bits, those of signalling NaNs too.
+//! holds them bit for bit and an 8-bit one holds `(clamp(c, 0, 1) * 255).round_ties_even()`: the
+//! shader rounds, since OpenGL leaves a driver either byte near the middle of two. It also leaves
+//! drivers some freedom with subnormals and NaNs; Mesa's software renderer keeps all their bits,
+//! those of signalling NaNs too.
 
 #[cfg(feature = "program")]
 mod check;
@@ -23,6 +24,7 @@ mod layer;
 mod offscreen;
 mod osmesa;
 mod placement;
+mod rounding;
 mod shader_program;
 #[cfg(feature = "program")]
 mod timed;
@@ -73,6 +75,7 @@ pub struct Screen {
     program: ShaderProgram,
     origin: Option<glow::UniformLocation>,
     extent: Option<glow::UniformLocation>,
+    steps: Option<glow::UniformLocation>,
     texture: glow::Texture,
     /// Empty: a core context draws nothing without one.
     vertex_array: glow::VertexArray,
@@ -112,6 +115,7 @@ impl Screen {
             gl,
             origin: program.uniform("origin"),
             extent: program.uniform("extent"),
+            steps: program.uniform("steps"),
             program,
             texture,
             vertex_array,
@@ -227,6 +231,7 @@ impl Screen {
             gl.use_program(Some(self.program.name));
             gl.uniform_2_i32(self.origin.as_ref(), placement.origin.x, placement.origin.y);
             gl.uniform_2_u32(self.extent.as_ref(), placement.size.x, placement.size.y);
+            gl.uniform_1_f32(self.steps.as_ref(), rounding::steps(gl).unwrap_or(0.0));
             gl.active_texture(glow::TEXTURE0);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.bind_vertex_array(Some(self.vertex_array));

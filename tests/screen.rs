@@ -126,15 +126,10 @@ impl Gl {
     }
 }
 
-/// What an 8-bit framebuffer makes of a sample.
 /// A screen in the context of the [`Gl`] whose functions these are.
 fn screen(gl: Rc<glow::Context>, width: u32, height: u32) -> Result<Screen, ScreenError> {
     // SAFETY: these tests keep that context current as long as they have a screen in it.
     unsafe { Screen::new(gl, UVec2::new(width, height)) }
-}
-
-fn byte(sample: f32) -> u8 {
-    (sample.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
 }
 
 /// A picture whose pixels say where they are: column, row, 0.5.
@@ -288,8 +283,10 @@ fn texels_are_exact_where_floats_no_longer_are() {
     }
 }
 
-#[test]
-fn eight_bits_are_the_nearest_byte_ties_to_even() {
+/// Draws samples around the middles of the `steps` between 0 and 1, and some beyond, into a
+/// framebuffer of `format`. What it holds of each pixel, as four bytes of `kind`, must be what
+/// `pixel` says of the samples' nearest steps.
+fn holds_the_nearest_steps(format: u32, kind: u32, steps: u32, pixel: fn([u32; 3]) -> u32) {
     let Some(gl) = Gl::open() else { return };
     let mut samples = vec![
         f32::NAN,
@@ -300,24 +297,44 @@ fn eight_bits_are_the_nearest_byte_ties_to_even() {
         2.0,
         1e-40,
     ];
-    for k in 0..=510 {
-        let middle = k as f32 / 510.0;
+    for k in 0..=2 * steps {
+        let middle = k as f32 / (2 * steps) as f32;
         samples.extend([middle.next_down(), middle, middle.next_up()]);
     }
-    let size = 32;
+    let size = 64;
     let mut image = Image::new(size).unwrap();
     assert!(samples.len() <= image.samples().len());
     image.samples_mut()[..samples.len()].copy_from_slice(&samples);
     let surface = UVec2::splat(size);
-    gl.bind_framebuffer(glow::RGBA8, surface);
+    gl.bind_framebuffer(format, surface);
     let mut screen = screen(gl.gl.clone(), size, size).unwrap();
     screen.upload(&image).unwrap();
     screen.draw(surface, Placement::fit(surface, UVec2::splat(size)));
-    let drawn = gl.read_bytes(surface);
-    for (drawn, pixel) in drawn.chunks(4).zip(image.samples().chunks(3)) {
-        let expected = [byte(pixel[0]), byte(pixel[1]), byte(pixel[2]), 255];
-        assert_eq!(drawn, expected, "{pixel:?}");
+    let bytes = gl.read(surface, kind, 1);
+    let (drawn, _) = bytes.as_chunks();
+    let nearest = |sample: f32| (sample.clamp(0.0, 1.0) * steps as f32).round_ties_even() as u32;
+    for (drawn, shown) in drawn.iter().zip(image.samples().chunks(3)) {
+        let expected = pixel([0, 1, 2].map(|i| nearest(shown[i])));
+        assert_eq!(u32::from_ne_bytes(*drawn), expected, "{shown:?}");
     }
+}
+
+#[test]
+fn eight_bits_are_the_nearest_byte_ties_to_even() {
+    holds_the_nearest_steps(
+        glow::RGBA8,
+        glow::UNSIGNED_BYTE,
+        255,
+        |[red, green, blue]| u32::from_ne_bytes([red as u8, green as u8, blue as u8, 255]),
+    );
+}
+
+#[test]
+fn ten_bits_are_the_nearest_step_ties_to_even() {
+    let kind = glow::UNSIGNED_INT_2_10_10_10_REV;
+    holds_the_nearest_steps(glow::RGB10_A2, kind, 1023, |[red, green, blue]| {
+        3 << 30 | blue << 20 | green << 10 | red
+    });
 }
 
 /// Leaves behind in `gl` what another painter may, by its name.

@@ -3,6 +3,7 @@
 uniform sampler2D picture;
 uniform ivec2 origin; // the picture's bottom left corner in the framebuffer
 uniform uvec2 extent; // its width and height there
+uniform float steps;  // of the framebuffer's colours between 0 and 1; 0 where it holds floats
 
 out vec4 color;
 
@@ -18,4 +19,9 @@ void main() {
     texel += uvec2(lessThanEqual((texel + 1u) * divisor, dividend));
     // texelFetch takes the texel's bits as they are.
     color = vec4(texelFetch(picture, ivec2(texel), 0).rgb, 1.0);
+    if (steps > 0.0) {
+        // OpenGL lets drivers round to a step that is not the nearest: from a step itself, they cannot. NaN is not greater than 0.
+        vec3 rounded = roundEven(min(color.rgb, 1.0) * steps) * (1.0 / steps);
+        color.rgb = mix(vec3(0.0), rounded, greaterThan(color.rgb, vec3(0.0)));
+    }
 }
