@@ -27,7 +27,23 @@ pub(crate) struct Casters {
     /// By the number of the tetrahedron.
     prisms: Vec<Prisms>,
     on_spheres: Vec<OnceLock<Vec<u16>>>,
-    on_faces: Vec<[OnceLock<Vec<u16>>; 4]>,
+    on_faces: Vec<OnceLock<OnFaces>>,
+}
+
+/// The casters of the faces of a tetrahedron: mostly read together, so they lie together.
+#[derive(Clone, Debug)]
+struct OnFaces {
+    /// Those of face 0, then those of face 1, and so on.
+    all: Box<[u16]>,
+    /// Where those of each face end.
+    ends: [u32; 4],
+}
+
+impl OnFaces {
+    fn of(&self, face: usize) -> &[u16] {
+        let begin = if face == 0 { 0 } else { self.ends[face - 1] };
+        &self.all[begin as usize..self.ends[face] as usize]
+    }
 }
 
 /// The casters of so many solids are found at once, so that no frame has to find any.
@@ -53,15 +69,13 @@ impl Casters {
                 .map(|(tetrahedron, facing)| Prisms::new(tetrahedron, facing, l))
                 .collect(),
             on_spheres: vec![OnceLock::new(); spheres.len()],
-            on_faces: vec![Default::default(); tetrahedra.len()],
+            on_faces: vec![OnceLock::new(); tetrahedra.len()],
             balls,
         };
         if casters.are_found() {
             for solid in 0..casters.balls.len() {
-                casters.on(solid, None);
-                for face in 0..4 {
-                    casters.on(solid, Some(face));
-                }
+                // Those of all faces of a tetrahedron are found together.
+                casters.on(solid, Some(0));
             }
         }
         casters
@@ -73,18 +87,10 @@ impl Casters {
             Solid::numbered(solid, &self.on_spheres, &self.on_faces),
             face,
         ) {
-            (Solid::Sphere(casters), _) => casters.get_or_init(|| {
-                let ball = &self.balls[solid];
-                self.find(solid, None, Balls::of(ball))
-            }),
-            (Solid::Tetrahedron(casters), Some(face)) => casters[face].get_or_init(|| {
-                let prisms = &self.prisms[solid - self.on_spheres.len()];
-                let vertices = vertices_of(face, &prisms.vertices);
-                match &prisms.light[face] {
-                    Some(light) => self.find(solid, Some(light), Balls::points(&vertices)),
-                    None => Vec::new(),
-                }
-            }),
+            (Solid::Sphere(casters), _) => casters.get_or_init(|| self.find_on_sphere(solid)),
+            (Solid::Tetrahedron(casters), Some(face)) => {
+                casters.get_or_init(|| self.find_on_faces(solid)).of(face)
+            }
             (Solid::Tetrahedron(_), None) => &[],
         }
     }
@@ -94,37 +100,67 @@ impl Casters {
         self.balls.len() <= FEW
     }
 
-    /// Finds the casters of a sphere, or of a face with the prism `light` on it.
-    fn find(&self, receiver: usize, light: Option<&Prism>, of_receiver: Balls<'_>) -> Vec<u16> {
+    fn find_on_sphere(&self, sphere: usize) -> Vec<u16> {
+        let ball = Balls::of(&self.balls[sphere]);
+        let is_caster = |&caster: &u16| !self.misses(caster, None, ball);
+        let near = self.near(sphere);
+        let mut casters: Vec<u16> = near.into_iter().filter(is_caster).collect();
+        // They live as long as the scene.
+        casters.shrink_to_fit();
+        casters
+    }
+
+    fn find_on_faces(&self, tetrahedron: usize) -> OnFaces {
+        let prisms = &self.prisms[tetrahedron - self.on_spheres.len()];
+        let near = self.near(tetrahedron);
+        let mut all = Vec::new();
+        let ends = [0, 1, 2, 3].map(|face| {
+            if let Some(light) = &prisms.light[face] {
+                let vertices = vertices_of(face, &prisms.vertices);
+                let points = Balls::points(&vertices);
+                let is_caster = |&caster: &u16| !self.misses(caster, Some(light), points);
+                all.extend(near.iter().copied().filter(is_caster));
+            }
+            all.len() as u32
+        });
+        OnFaces {
+            all: all.into_boxed_slice(),
+            ends,
+        }
+    }
+
+    /// The solids whose balls may stand between a point of the receiver's ball and the light.
+    fn near(&self, receiver: usize) -> Vec<u16> {
         if self.enclosed[receiver] {
             return Vec::new();
         }
         let ball = &self.balls[receiver];
-        let is_caster = |&caster: &usize| {
+        let is_near = |&caster: &usize| {
             let other = &self.balls[caster];
             let between = other.center - ball.center;
             let slack = ball.slack(other);
             let touching = (other.radius + ball.radius) * MARGIN + slack;
-            if self.enclosed[caster]
-                || between.cross(self.l).length_squared() > touching * touching * MARGIN
-                || between.dot(self.l) < -touching
-            {
-                return false;
-            }
-            let misses = |balls| light.is_some_and(|light| light.misses(balls));
-            match Solid::numbered(caster, &self.on_spheres, &self.prisms) {
-                Solid::Sphere(_) => !misses(Balls::of(other)),
-                Solid::Tetrahedron(prisms) => {
-                    !misses(Balls::points(&prisms.vertices)) && !prisms.shadow.misses(of_receiver)
-                }
-            }
+            let is_beside = between.cross(self.l).length_squared() > touching * touching * MARGIN;
+            let is_behind = between.dot(self.l) < -touching;
+            !self.enclosed[caster] && !is_beside && !is_behind
         };
-        let casters = self.projections.overlapping(receiver).filter(is_caster);
-        let mut casters: Vec<u16> = casters.map(|caster| caster as u16).collect();
-        // They live as long as the scene.
-        casters.shrink_to_fit();
-        casters.sort_unstable();
-        casters
+        let near = self.projections.overlapping(receiver).filter(is_near);
+        let mut near: Vec<u16> = near.map(|caster| caster as u16).collect();
+        near.sort_unstable();
+        near
+    }
+
+    /// Whether a solid certainly casts no shadow on a sphere, or on a face with the prism `light` on
+    /// it.
+    fn misses(&self, caster: u16, light: Option<&Prism>, of_receiver: Balls<'_>) -> bool {
+        let caster = usize::from(caster);
+        let misses = |balls| light.is_some_and(|light| light.misses(balls));
+        match Solid::numbered(caster, &self.on_spheres, &self.prisms) {
+            Solid::Sphere(_) => misses(Balls::of(&self.balls[caster])),
+            Solid::Tetrahedron(prisms) => {
+                misses(Balls::points(&prisms.vertices)) || prisms.shadow.misses(of_receiver)
+            }
+        }
     }
 }
 

@@ -222,7 +222,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
     ) -> FrontFaces<'f> {
         let (arena, grid) = (parts.arena, parts.grid);
         let faces = entered(t.eye_signs);
-        let mut front_faces = Growing::new_in(arena);
+        let mut front_faces = Growing::with_capacity_in(4, arena);
         for face in faces.clone() {
             let mut shadows = Growing::new_in(arena);
             if self.receives(solid.number, face, t) {
