@@ -223,6 +223,8 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         let (arena, grid) = (parts.arena, parts.grid);
         let faces = entered(t.eye_signs);
         let mut front_faces = Growing::with_capacity_in(4, arena);
+        // In shadow, all faces have one colour.
+        let mut dark = None;
         for face in faces.clone() {
             let mut shadows = Growing::new_in(arena);
             if self.receives(solid.number, face, t) {
@@ -230,7 +232,14 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             }
             let mut paint = |in_shadow| {
                 let decision = self.decision(solid.number, Some(face), in_shadow);
-                parts.paints.add(decision)
+                if !in_shadow {
+                    return parts.paints.add(decision);
+                }
+                let paint = match dark {
+                    Some(dark) => parts.paints.add_like(dark, decision),
+                    None => parts.paints.add(decision),
+                };
+                *dark.insert(paint)
             };
             let outside = paint(self.has_shadows && t.solid.turned_away(face));
             front_faces.push(FrontFace {

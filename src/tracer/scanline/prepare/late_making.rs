@@ -31,6 +31,9 @@ use crate::tracer::tetrahedron::entered;
 /// In a solid of more rows, each shadow's own rows are found.
 const FEW_ROWS: u32 = 4 * ROWS as u32;
 
+/// Few solids have more creases and shadows.
+const FEW_REGIONS: usize = 16;
+
 // Rows are kept as u16.
 const _: () = assert!(MAX_SIZE <= u16::MAX as u32);
 
@@ -69,7 +72,8 @@ impl<'f> LateFaces<'f> {
     ) -> (FrontFaces<'s>, Regions<'s>, AllPaints<'s>) {
         let picture = source.pixels.bounded();
         let appearances = Appearances::new(picture, picture.view(self.mirrored), self.mirrored);
-        let mut parts = Builder::new((source.grid, source.level), color, u64::MAX, 0, spare);
+        let screen = (source.grid, source.level);
+        let mut parts = Builder::new(screen, color, u64::MAX, FEW_REGIONS, spare);
         let faces = appearances.front_faces(&self.outlined, self.tetrahedron, &mut parts);
         (faces, parts.edge_table.regions(), parts.paints.all())
     }

@@ -51,6 +51,9 @@ pub(crate) struct Paints<'f, 'c> {
     all: Vec<'f, Paint>,
 }
 
+/// Late faces have at most two paints each, and few solids more than three.
+const FEW: usize = 6;
+
 /// The number of a paint.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PaintNumber(pub(crate) u32);
@@ -60,7 +63,7 @@ impl<'f, 'c> Paints<'f, 'c> {
     pub(crate) fn new(color: &'c dyn Fn(Decision) -> [f32; 3], arena: &'f Bump) -> Self {
         Paints {
             color,
-            all: Vec::new_in(arena),
+            all: Vec::with_capacity_in(FEW, arena),
         }
     }
 
@@ -71,6 +74,15 @@ impl<'f, 'c> Paints<'f, 'c> {
 
     pub(crate) fn add(&mut self, decision: Decision) -> PaintNumber {
         self.all.push(self.of(decision));
+        PaintNumber(self.all.len() as u32 - 1)
+    }
+
+    /// Adds the paint of a decision that has the colour of another paint.
+    pub(crate) fn add_like(&mut self, other: PaintNumber, decision: Decision) -> PaintNumber {
+        self.all.push(Paint {
+            decision,
+            ..self.all[other.0 as usize]
+        });
         PaintNumber(self.all.len() as u32 - 1)
     }
 
