@@ -141,7 +141,8 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
             // The outline of a sphere is an ellipse.
             (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
             (Solid::Tetrahedron(t), _) => {
-                Appearance::FrontFaces(self.front_faces(&solid.faces(), t, parts))
+                let front_faces = self.front_faces(&solid.faces(), t, parts);
+                Appearance::FrontFaces(parts.arena.alloc(front_faces))
             }
         }
     }
