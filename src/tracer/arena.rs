@@ -72,17 +72,28 @@ impl<T: Default> OnDemand<T> {
 pub(super) trait SliceAllocator<'f> {
     /// A slice of all items.
     fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T];
+
+    /// A slice of as many items as `count`, each made from its index where it is kept.
+    fn slice_with<T>(&self, count: usize, item: impl FnMut(usize) -> T) -> &'f [T];
 }
 
 impl<'f> SliceAllocator<'f> for &'f Bump {
     fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
         self.alloc_slice_fill_iter(items)
     }
+
+    fn slice_with<T>(&self, count: usize, item: impl FnMut(usize) -> T) -> &'f [T] {
+        self.alloc_slice_fill_with(count, item)
+    }
 }
 
 impl<'f> SliceAllocator<'f> for Member<'f> {
     fn slice_of<T>(&self, items: impl ExactSizeIterator<Item = T>) -> &'f [T] {
         self.alloc_slice_fill_iter(items)
+    }
+
+    fn slice_with<T>(&self, count: usize, item: impl FnMut(usize) -> T) -> &'f [T] {
+        self.alloc_slice_fill_with(count, item)
     }
 }
 

@@ -54,7 +54,7 @@ impl<R: Real> Vector<R> {
     }
 
     /// Component by component, as light and colour multiply.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn times(self, other: Self) -> Self {
         Vector::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }

@@ -94,19 +94,17 @@ impl<'f, R: Real> View<'f, R> {
             }
             Halfway::Computed => Some(halfway(&eye_direction(), &to_light)),
         };
-        let spheres = scene.spheres().iter().zip(&scene.facts().spheres);
-        let spheres = spheres
-            .enumerate()
-            .map(|(index, (sphere, &support))| Sphere {
-                center: match direct {
-                    None => transform.point(sphere.center),
-                    Some(direct) => reflect(direct.spheres[index].center, mirror_height),
-                },
-                radius: R::exact(sphere.radius) * transform.scale,
-                support,
-            });
+        let (spheres, supports) = (scene.spheres(), &scene.facts().spheres);
+        let sphere = |index: usize| Sphere {
+            center: match direct {
+                None => transform.point(spheres[index].center),
+                Some(direct) => reflect(direct.spheres[index].center, mirror_height),
+            },
+            radius: R::exact(spheres[index].radius) * transform.scale,
+            support: supports[index],
+        };
         View {
-            spheres: allocator.slice_of(spheres),
+            spheres: allocator.slice_with(spheres.len(), sphere),
             tetrahedra: TetrahedraInView::new(
                 scene,
                 transform,

@@ -74,6 +74,7 @@ impl<R: Real> ViewTransform<R> {
     }
 
     /// A direction of the scene in view space, unscaled.
+    #[inline]
     pub(super) fn turn(&self, v: DVec3) -> Vector<R> {
         let v = Vector::<R>::exact(v);
         Vector::new(
@@ -84,6 +85,7 @@ impl<R: Real> ViewTransform<R> {
     }
 
     /// A point of the scene in view space.
+    #[inline]
     pub(super) fn point(&self, point: DVec3) -> Vector<R> {
         self.turn(point) * self.scale
     }
