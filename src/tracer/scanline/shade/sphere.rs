@@ -199,13 +199,14 @@ impl HitBounds {
         form.plus(n.dot(self.center - half_space.at))
     }
 
-    /// The highlight of a sphere of this radius, where `h` is that of the view.
+    /// The highlight of a sphere of this radius, where `h` is that of the view, `form` is n·h, and
+    /// `specular` is the largest coefficient of any channel.
     fn highlight(
         &self,
-        h: [Bounded; 3],
+        (h, form): ([Bounded; 3], LinearForm),
         highlight: &Highlight,
         radius: Bounded,
-        divisor: Divisor,
+        specular: f64,
     ) -> SphereHighlight {
         // 1 − n·h is computed as Y = |D|²/2, where D = n − h = (q, m, s)/R − h. Let ε be the error
         // of D without the rounding of its three differences, which is less than u of D. Then the
@@ -218,28 +219,22 @@ impl HitBounds {
         let inverse = 1.0 / radius.value();
         let scaled = radius.error() * inverse + 3.0 * U;
         let part = |error: f64, h: Bounded| error * inverse + h.error() + scaled;
-        let errors = self.s_errors.map(|s_error| {
-            let [q, m, s] = [
-                part(self.q_error, h[0]),
-                part(self.m_error, h[1]),
-                part(s_error, h[2]),
-            ];
-            let error = (q + m + s) * INFLATION;
+        let (q, m) = (part(self.q_error, h[0]), part(self.m_error, h[1]));
+        let mut errors = [[0.0; 2]; ZONES];
+        for (errors, s_error) in errors.iter_mut().zip(self.s_errors) {
+            let error = (q + m + part(s_error, h[2])) * INFLATION;
             // |Xⁿ − xⁿ| ≤ n |X − x| max(X, x)ⁿ⁻¹, where X = 1 − Y; 1 − Y rounds, and so do n − 1
             // products, by u of what they give.
             let constant = n * (error * steepest / 2.0 + error * error + 2.0 * U) * INFLATION;
             let slope = n * (error / steepest + 16.0 * U) * INFLATION;
             let is_small = constant + slope * highlight.one_minus_threshold < 1.0 / 64.0;
-            if is_small {
-                [constant, slope]
-            } else {
-                [f64::INFINITY, 0.0]
-            }
-        });
+            let constant = if is_small { constant } else { f64::INFINITY };
+            *errors = [constant * specular, slope * specular];
+        }
         SphereHighlight {
-            form: self.form(h.map(|component| divisor.divide(component))),
+            form,
             errors,
-            max_distance: (highlight.max_distance + part(self.m_error, h[1])) * INFLATION,
+            max_distance: (highlight.max_distance + m) * INFLATION,
         }
     }
 }
@@ -298,13 +293,13 @@ impl<'f> SphereConstants<'f> {
         let to_light = lighting.to_light_unit.map(|part| divisor.divide(part));
         let n_dot_l = bounds.form(to_light);
         let highlight = &lighting.highlight;
-        let mut sphere_highlight = lighting
+        let n_dot_h = lighting
             .halfway
-            .map(|h| bounds.highlight(h, highlight, sphere.radius, divisor));
+            .map(|h| (h, bounds.form(h.map(|part| divisor.divide(part)))));
         // A power below 2⁻⁵⁹ is left out, or replaced by 2⁻⁵⁹. The form tells such powers, if its
         // error changes the power by no more than a factor of 1.05.
         let tiny = 4.0 * f64::from_bits((1023 - 59) << 52);
-        let form_error = sphere_highlight.as_ref().map_or(0.0, |h| h.form.error);
+        let form_error = n_dot_h.map_or(0.0, |(_, form)| form.error);
         let is_small = f64::from(highlight.exponent) * (form_error + U) < 1.0 / 64.0;
         let left_out = if is_small { tiny } else { f64::INFINITY };
         // The largest of each part of the bound among all channels.
@@ -329,12 +324,7 @@ impl<'f> SphereConstants<'f> {
             channel(color.y, green),
             channel(color.z, blue),
         ];
-        if let Some(highlight) = &mut sphere_highlight {
-            let largest = channels.iter().fold(0.0_f64, |a, [.., s]| a.max(s.abs()));
-            highlight.errors = highlight
-                .errors
-                .map(|error| error.map(|part| part * largest));
-        }
+        let specular = channels.iter().fold(0.0_f64, |a, [.., s]| a.max(s.abs()));
         // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three products round,
         // then two products and two sums, and at last the sum of a sample and its bound.
         let errors = bounds
@@ -355,7 +345,8 @@ impl<'f> SphereConstants<'f> {
             lighting,
             n_dot_l,
             inverse_radius: 1.0 / sphere.radius.value(),
-            highlight: sphere_highlight,
+            highlight: n_dot_h
+                .map(|n_dot_h| bounds.highlight(n_dot_h, highlight, sphere.radius, specular)),
             color: Coefficients {
                 ambient: part(0),
                 diffuse: part(1),
