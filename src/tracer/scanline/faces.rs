@@ -1,10 +1,8 @@
 //! What a row shows of late faces: the creases and shadows that divide a span.
 
-use std::ops::Range;
-
 use crate::tracer::scanline::grid::{Columns, ROWS};
 use crate::tracer::scanline::prepare::late_faces::SplitFaces;
-use crate::tracer::scanline::row_edges::RowEdges;
+use crate::tracer::scanline::row_edges::{Added, RowEdges};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::resolve::front_face;
 use crate::tracer::scanline::visibility::visible::Shown;
@@ -25,20 +23,11 @@ pub(crate) struct FaceSplitter {
     parts: Vec<(Columns, Shown)>,
 }
 
-/// Where the edges of late faces lie.
+/// The edges of late faces.
 struct Slot {
     /// The number of the late faces.
     number: usize,
-    /// Where they begin among the edges of each row of the band, and where they end.
-    begin: [usize; ROWS],
-    end: [usize; ROWS],
-}
-
-impl Slot {
-    fn edges(&self, row: u32) -> Range<usize> {
-        let row = row as usize % ROWS;
-        self.begin[row]..self.end[row]
-    }
+    edges: Added,
 }
 
 impl FaceSplitter {
@@ -58,7 +47,7 @@ impl FaceSplitter {
         (number, faces): (usize, &SplitFaces<'_>),
         row: u32,
         columns: Columns,
-        cross: impl FnOnce(u32, &mut RowEdges),
+        cross: impl FnOnce(u32, &mut RowEdges) -> Added,
     ) -> impl Iterator<Item = (Columns, Shown)> {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
@@ -69,11 +58,11 @@ impl FaceSplitter {
         if slot.is_none_or(|slot| slot.number != number) {
             self.add(number, |edges| cross(first, edges));
         }
-        let edges = self.slots[self.slot_of[number] as usize].edges(row);
+        let edges = &self.slots[self.slot_of[number] as usize].edges;
         self.parts.clear();
         self.coverage.clear(&faces.kinds);
         let (mut from, end) = columns;
-        for edge in self.edges.sorted_among(row, edges) {
+        for edge in self.edges.sorted(edges, row) {
             let to = edge.column().min(end);
             if from < to {
                 let (_, shown) = front_face(&faces.front_faces, &self.coverage);
@@ -98,18 +87,13 @@ impl FaceSplitter {
     }
 
     /// Adds the edges of the late faces of this number.
-    fn add(&mut self, number: usize, cross: impl FnOnce(&mut RowEdges)) {
-        if self.edges.counts().iter().sum::<usize>() >= self.enough {
+    fn add(&mut self, number: usize, cross: impl FnOnce(&mut RowEdges) -> Added) {
+        if self.edges.room() >= self.enough {
             self.forget();
         }
-        let begin = self.edges.counts();
-        cross(&mut self.edges);
+        let edges = cross(&mut self.edges);
         self.slot_of[number] = self.slots.len() as u32;
-        self.slots.push(Slot {
-            number,
-            begin,
-            end: self.edges.counts(),
-        });
+        self.slots.push(Slot { number, edges });
     }
 
     /// Forgets all edges.

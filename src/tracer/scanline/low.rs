@@ -10,7 +10,7 @@ use fearless_simd::Level;
 use crate::tracer::scanline::active::ActiveEdges;
 use crate::tracer::scanline::edges::table::EdgeTable;
 use crate::tracer::scanline::grid::{Grid, ROWS};
-use crate::tracer::scanline::row_edges::RowEdges;
+use crate::tracer::scanline::row_edges::{Added, RowEdges};
 use crate::tracer::scanline::visibility::coverage::Coverage;
 use crate::tracer::scanline::visibility::visible::{Packed, Visible};
 
@@ -20,6 +20,8 @@ pub(crate) struct LowEdges {
     /// The first row of the band.
     first: Option<u32>,
     edges: RowEdges,
+    /// All edges of the band.
+    added: Added,
     /// Empty, except while a row is overlaid.
     coverage: Coverage,
     /// The column at which each span of the overlaid row ends, and what the span shows.
@@ -46,14 +48,14 @@ impl LowEdges {
             self.first = Some(first);
             let low = table.low(first);
             self.edges.clear();
-            self.edges.add(&table.regions, low, first, level, grid);
+            self.added = self.edges.add(&table.regions, low, first, level, grid);
         }
-        self.edges.reach(row)
+        self.edge_count(row) > 0
     }
 
     /// The number of edges of low regions that cross the row.
     pub(crate) fn edge_count(&self, row: u32) -> usize {
-        self.edges.count(row)
+        self.added.count(row)
     }
 
     /// Lays the low regions over the gaps of a row that both have entered. `resolve` finds what is
@@ -67,7 +69,7 @@ impl LowEdges {
     ) {
         let kinds = &table.regions.kinds;
         self.spans.clear();
-        let mut low = self.edges.sorted(row).iter().peekable();
+        let mut low = self.edges.sorted(&self.added, row).peekable();
         let (mut from, mut covering) = (0, 0);
         for (to, alone, edge) in active.gaps(row) {
             loop {

@@ -1,34 +1,45 @@
 //! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
 //! from one row to the next.
 
-use std::ops::Range;
-
+use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
+use crate::image::MAX_SIZE;
 use crate::tracer::scanline::active::Edge;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::table::Regions;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 
-/// An edge of a region after its column in a row, in one word, which sorts faster than two.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct EdgeAt(u64);
+/// An edge of a region after its column in a row, in one number: of two edges, that with the
+/// smaller number comes first.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) struct EdgeAt(f64);
 
 impl EdgeAt {
-    fn new(column: u32, edge: Edge) -> EdgeAt {
-        EdgeAt(u64::from(column) << 32 | u64::from(edge.0))
+    /// A column behind all others.
+    const BEYOND: u32 = (1 << 20) - 1;
+
+    /// In place of an edge where a row has no more.
+    const NONE: EdgeAt = EdgeAt::new(EdgeAt::BEYOND, Edge(u32::MAX));
+
+    const fn new(column: u32, edge: Edge) -> EdgeAt {
+        // The bits after those of the exponent are the column and the edge.
+        let bits = (column as u64) << 32 | edge.0 as u64;
+        EdgeAt(f64::from_bits(1.0_f64.to_bits() | bits))
     }
 
     /// The column at which it is.
     pub(crate) fn column(self) -> u32 {
-        (self.0 >> 32) as u32
+        (self.0.to_bits() >> 32) as u32 & EdgeAt::BEYOND
     }
 
     /// The edge itself.
     pub(crate) fn edge(self) -> Edge {
-        Edge(self.0 as u32)
+        Edge(self.0.to_bits() as u32)
     }
 }
+
+const _: () = assert!(MAX_SIZE < EdgeAt::BEYOND);
 
 /// Regions that bands can cross.
 pub(crate) trait BandRegions {
@@ -46,16 +57,37 @@ impl BandRegions for Regions<'_> {
 /// The edges of some regions in each row of a band.
 #[derive(Default)]
 pub(crate) struct RowEdges {
-    /// A bit for each row: whether any of the regions reaches it.
-    reached: u64,
-    rows: [Vec<EdgeAt>; ROWS],
+    /// Those of each row, side by side: vector instructions sort all rows at once.
+    edges: Vec<[f64; ROWS]>,
+    /// How many of `edges` are in use; the others are memory for more.
+    used: usize,
+}
+
+/// Which edges were added together.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Added {
+    /// Where they begin among all.
+    begin: usize,
+    /// How many there are in each row.
+    counts: [usize; ROWS],
+}
+
+impl Added {
+    /// How many there are in a row of the band.
+    pub(crate) fn count(&self, row: u32) -> usize {
+        self.counts[row as usize % ROWS]
+    }
 }
 
 impl RowEdges {
     /// Removes all edges.
     pub(crate) fn clear(&mut self) {
-        self.rows.iter_mut().for_each(Vec::clear);
-        self.reached = 0;
+        self.used = 0;
+    }
+
+    /// For how many edges there is room in the memory that is in use.
+    pub(crate) fn room(&self) -> usize {
+        ROWS * self.used
     }
 
     /// Adds the edges of the regions of these numbers in the band of rows from `first` on.
@@ -66,61 +98,192 @@ impl RowEdges {
         first: u32,
         level: Level,
         grid: Grid,
-    ) {
-        dispatch!(level, simd => self.add_all(simd, regions, numbers, first, grid));
+    ) -> Added {
+        dispatch!(level, simd => {
+            let added = self.cross_all(simd, regions, numbers, first, grid);
+            sort_rows(simd, &mut self.edges[added.begin..self.used]);
+            added
+        })
     }
 
+    /// The same; the edges are not sorted yet.
     #[inline(always)]
-    fn add_all<S: Simd>(
+    fn cross_all<S: Simd>(
         &mut self,
         simd: S,
         regions: &impl BandRegions,
         numbers: &[u32],
         first: u32,
         grid: Grid,
-    ) {
-        for &region in numbers {
-            let region = region as usize;
-            let band = regions.cross(simd, region, first, grid);
-            let ([a, d], [b, c]) = (band.possible, band.certain);
-            let mut filled = band.filled;
-            self.reached |= filled;
-            while filled != 0 {
-                let row = filled.trailing_zeros() as usize;
-                filled &= filled - 1;
-                let columns = [a[row], b[row], c[row], d[row]];
-                let is_certain = (a[row], d[row]) == (b[row], c[row]);
-                for edge in Edge::of(region, is_certain) {
-                    self.rows[row].push(EdgeAt::new(columns[edge.kind()], edge));
+    ) -> Added {
+        let begin = self.used;
+        let mut ends = [begin; ROWS];
+        for (place, &number) in numbers.iter().enumerate() {
+            // A region has at most four edges in each row.
+            let most = begin + 4 * (place + 1);
+            if self.edges.len() < most {
+                self.edges.resize(most, [0.0; ROWS]);
+            }
+            let band = regions.cross(simd, number as usize, first, grid);
+            push(&mut self.edges, &mut ends, number, &band);
+        }
+        for end in ends {
+            self.used = self.used.max(end);
+        }
+        for (row, &end) in ends.iter().enumerate() {
+            for edges in &mut self.edges[end..self.used] {
+                edges[row] = EdgeAt::NONE.0;
+            }
+        }
+        let counts = ends.map(|end| end - begin);
+        Added { begin, counts }
+    }
+
+    /// Those edges of a row of the band that were added together, from the left.
+    pub(crate) fn sorted(&self, added: &Added, row: u32) -> impl Iterator<Item = EdgeAt> {
+        let edges = &self.edges[added.begin..added.begin + added.count(row)];
+        edges
+            .iter()
+            .map(move |rows| EdgeAt(rows[row as usize % ROWS]))
+    }
+}
+
+/// Writes the edges of a region behind those of each row, which end at `ends`.
+#[inline(always)]
+fn push(edges: &mut [[f64; ROWS]], ends: &mut [usize; ROWS], region: u32, band: &BandColumns) {
+    let ([a, d], [b, c]) = (&band.possible, &band.certain);
+    let is_filled = |row: usize| band.filled >> row & 1 == 1;
+    let edge = |kind: u32, column: u32| EdgeAt::new(column, Edge(4 * region + kind)).0;
+    if band.is_certain {
+        // No processor predicts in which rows a low region has columns: so edges are written for
+        // all rows, and the end of each tells whether they count.
+        for row in 0..ROWS {
+            let end = ends[row];
+            edges[end][row] = edge(1, a[row]);
+            edges[end + 1][row] = edge(3, d[row]);
+            ends[row] = end + 2 * (band.filled >> row & 1) as usize;
+        }
+        return;
+    }
+    for row in (0..ROWS).filter(|row| is_filled(*row)) {
+        let columns = [a[row], b[row], c[row], d[row]];
+        let is_certain = (a[row], d[row]) == (b[row], c[row]);
+        for kind in Edge::of(region as usize, is_certain).map(Edge::kind) {
+            edges[ends[row]][row] = edge(kind as u32, columns[kind]);
+            ends[row] += 1;
+        }
+    }
+}
+
+/// Sorts the edges of each row: Batcher's merge exchange, Algorithm M in section 5.2.2 of Knuth's
+/// The Art of Computer Programming. Which edges it compares depends on nothing but their number: so
+/// it has no branches that no processor predicts, and sorts all rows at once.
+#[inline(always)]
+fn sort_rows<S: Simd>(simd: S, edges: &mut [[f64; ROWS]]) {
+    let count = edges.len();
+    let half = count.next_power_of_two() / 2;
+    let mut length = half;
+    while length > 0 {
+        let (mut from, mut distance, mut next) = (0, length, half);
+        loop {
+            for first in (from..count.saturating_sub(distance)).step_by(2 * length) {
+                let (left, right) = edges[first..].split_at_mut(distance);
+                for (left, right) in left.iter_mut().take(length).zip(right) {
+                    exchange(simd, left, right);
                 }
             }
+            if next == length {
+                break;
+            }
+            (from, distance, next) = (length, next - length, next / 2);
+        }
+        length /= 2;
+    }
+}
+
+/// Exchanges the numbers of those rows in which they are out of order.
+#[inline(always)]
+fn exchange<S: Simd>(simd: S, left: &mut [f64; ROWS], right: &mut [f64; ROWS]) {
+    let pairs = left.chunks_exact_mut(S::f64s::LEN);
+    for (left, right) in pairs.zip(right.chunks_exact_mut(S::f64s::LEN)) {
+        let [a, b] = [&*left, &*right].map(|numbers| S::f64s::from_slice(simd, numbers));
+        a.min(b).store_slice(left);
+        a.max(b).store_slice(right);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::tracer;
+
+    /// Random columns of regions in a band.
+    struct RandomRegions(Vec<BandColumns>);
+
+    impl BandRegions for RandomRegions {
+        fn cross<S: Simd>(&self, _: S, number: usize, _: u32, _: Grid) -> BandColumns {
+            self.0[number].clone()
         }
     }
 
-    /// Whether any of the regions reaches a row of the band.
-    pub(crate) fn reach(&self, row: u32) -> bool {
-        self.reached >> (row as usize % ROWS) & 1 == 1
+    impl RandomRegions {
+        fn new(count: usize, random: &mut Random) -> RandomRegions {
+            let region = |_| {
+                let mut band = BandColumns::NONE;
+                for row in 0..ROWS {
+                    let mut columns = [(); 4].map(|()| random.below(MAX_SIZE as usize + 1) as u32);
+                    columns.sort_unstable();
+                    let [a, mut b, mut c, d] = columns;
+                    if random.below(3) > 0 {
+                        (b, c) = (a, d);
+                    }
+                    (band.possible[0][row], band.possible[1][row]) = (a, d);
+                    (band.certain[0][row], band.certain[1][row]) = (b, c);
+                    band.is_certain &= (a, d) == (b, c);
+                    band.filled |= u64::from(a < d && random.below(2) > 0) << row;
+                }
+                band
+            };
+            RandomRegions((0..count).map(region).collect())
+        }
+
+        /// The edges in a row, from the left.
+        fn edges(&self, row: usize) -> Vec<(u32, Edge)> {
+            let numbered = self.0.iter().enumerate();
+            let filled = numbered.filter(|(_, band)| band.filled >> row & 1 == 1);
+            let edges = filled.flat_map(|(number, band)| {
+                let ([a, d], [b, c]) = (band.possible, band.certain);
+                let columns = [a[row], b[row], c[row], d[row]];
+                let is_certain = (columns[0], columns[3]) == (columns[1], columns[2]);
+                Edge::of(number, is_certain).map(move |edge| (columns[edge.kind()], edge))
+            });
+            let mut edges: Vec<_> = edges.collect();
+            edges.sort_unstable();
+            edges
+        }
     }
 
-    /// The number of edges in a row of the band.
-    pub(crate) fn count(&self, row: u32) -> usize {
-        self.rows[row as usize % ROWS].len()
-    }
-
-    /// The numbers of edges in each row of the band.
-    pub(crate) fn counts(&self) -> [usize; ROWS] {
-        std::array::from_fn(|row| self.rows[row].len())
-    }
-
-    /// The edges in a row of the band, from the left.
-    pub(crate) fn sorted(&mut self, row: u32) -> &[EdgeAt] {
-        self.sorted_among(row, 0..self.count(row))
-    }
-
-    /// The same of those edges that were added as this range of the row's.
-    pub(crate) fn sorted_among(&mut self, row: u32, range: Range<usize>) -> &[EdgeAt] {
-        let edges = &mut self.rows[row as usize % ROWS][range];
-        edges.sort_unstable();
-        edges
+    #[test]
+    fn each_row_has_the_edges_of_its_regions_from_the_left() {
+        let mut random = Random::new();
+        let grid = Grid::new(MAX_SIZE);
+        for level in tracer::Simd::all().into_iter().map(|simd| simd.0) {
+            let mut all = RowEdges::default();
+            for count in (0..40).chain([100, 128, 129]) {
+                if count % 10 == 0 {
+                    all.clear();
+                }
+                let [regions, others] = [(); 2].map(|()| RandomRegions::new(count, &mut random));
+                let numbers: Vec<u32> = (0..count as u32).collect();
+                let added = all.add(&regions, &numbers, 0, level, grid);
+                all.add(&others, &numbers, 0, level, grid);
+                for row in 0..ROWS {
+                    let sorted = all.sorted(&added, row as u32);
+                    let sorted: Vec<_> = sorted.map(|at| (at.column(), at.edge())).collect();
+                    assert!(sorted == regions.edges(row), "{count} regions, row {row}");
+                }
+            }
+        }
     }
 }

@@ -10,6 +10,7 @@ const ALL: u64 = (1 << ROWS) - 1;
 
 /// The columns of a region in each row of a band: where they begin, and where they end. `certain`
 /// lies within `possible`.
+#[cfg_attr(test, derive(Clone))]
 pub(crate) struct BandColumns {
     /// The columns outside of which the region has none.
     pub(crate) possible: [[u32; ROWS]; 2],

@@ -24,7 +24,7 @@ use crate::tracer::scanline::prepare::late_faces::{
 };
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::prepare::shadows::shadows_on_face;
-use crate::tracer::scanline::row_edges::RowEdges;
+use crate::tracer::scanline::row_edges::{Added, RowEdges};
 use crate::tracer::scanline::write::paint::AllPaints;
 use crate::tracer::tetrahedron::entered;
 
@@ -155,7 +155,7 @@ impl<'f> LateFaces<'f> {
         edges: &mut RowEdges,
         source: &LateSource<'f>,
         spare: &mut Bump,
-    ) {
+    ) -> Added {
         spare.reset();
         let reach = |(from, to): (u32, u32)| from < first + ROWS as u32 && first < to;
         let (level, grid) = (source.level, source.grid);
@@ -183,7 +183,7 @@ impl<'f> LateFaces<'f> {
             outline: (self.outlined.outline, self.outlined.rows),
             again: &again,
         };
-        edges.add(&regions, numbers, first, level, grid);
+        edges.add(&regions, numbers, first, level, grid)
     }
 
     /// The shadow of a tetrahedron on a front face.
@@ -236,17 +236,18 @@ mod tests {
                     }
                     for first in (0..size).step_by(ROWS) {
                         let (mut kept, mut made) = (RowEdges::default(), RowEdges::default());
-                        late.cross(faces, first, &mut kept, source, &mut spare);
+                        let of_kept = late.cross(faces, first, &mut kept, source, &mut spare);
                         spare.reset();
                         let (_, regions, _) = late.make(source, &|_| [0.0; 3], &spare);
                         let numbers: Vec<u32> = (0..regions.all.len() as u32).collect();
-                        made.add(&regions, &numbers, first, source.level, source.grid);
+                        let of_made =
+                            made.add(&regions, &numbers, first, source.level, source.grid);
                         for row in first..first + ROWS as u32 {
                             assert!(
-                                kept.sorted(row) == made.sorted(row),
+                                kept.sorted(&of_kept, row).eq(made.sorted(&of_made, row)),
                                 "α = {alpha}, row {row}"
                             );
-                            edges += made.count(row);
+                            edges += of_made.count(row);
                         }
                     }
                 }
