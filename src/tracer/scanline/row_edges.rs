@@ -63,6 +63,10 @@ pub(crate) struct RowEdges {
     used: usize,
 }
 
+/// So many regions are crossed before the edges of the first are written: no crossing then waits for
+/// what is unpredictable about the edges of another, and the memory of several is read at once.
+const AT_ONCE: usize = 8;
+
 /// Which edges were added together.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Added {
@@ -118,14 +122,20 @@ impl RowEdges {
     ) -> Added {
         let begin = self.used;
         let mut ends = [begin; ROWS];
-        for (place, &number) in numbers.iter().enumerate() {
+        let mut most = begin;
+        let mut bands = [BandColumns::NONE; AT_ONCE];
+        for numbers in numbers.chunks(AT_ONCE) {
+            for (band, &number) in bands.iter_mut().zip(numbers) {
+                *band = regions.cross(simd, number as usize, first, grid);
+            }
             // A region has at most four edges in each row.
-            let most = begin + 4 * (place + 1);
+            most += 4 * numbers.len();
             if self.edges.len() < most {
                 self.edges.resize(most, [0.0; ROWS]);
             }
-            let band = regions.cross(simd, number as usize, first, grid);
-            push(&mut self.edges, &mut ends, number, &band);
+            for (band, &number) in bands.iter().zip(numbers) {
+                push(&mut self.edges, &mut ends, number, band);
+            }
         }
         for end in ends {
             self.used = self.used.max(end);
