@@ -7,6 +7,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, mask32x8, u32x8};
 
+use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::table::EdgeTable;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::visibility::coverage::{Cover, Coverage};
@@ -339,7 +340,8 @@ impl ActiveEdges {
         first: u32,
         grid: Grid,
     ) -> BandEdges {
-        let mut band = table.regions.all[region].cross(simd, first, grid);
+        let mut band = BandColumns::NONE;
+        table.regions.all[region].cross(simd, first, grid, &mut band);
         if band.filled == 0 {
             return BandEdges::None;
         }

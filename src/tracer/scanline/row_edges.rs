@@ -43,14 +43,20 @@ const _: () = assert!(MAX_SIZE < EdgeAt::BEYOND);
 
 /// Regions that bands can cross.
 pub(crate) trait BandRegions {
-    /// The columns of the region of this number in the band of rows from `first` on.
-    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns;
+    /// Finds the columns of the region of this number in the band of rows from the given one on.
+    fn cross<S: Simd>(&self, simd: S, number: usize, first: (u32, Grid), band: &mut BandColumns);
 }
 
 impl BandRegions for Regions<'_> {
     #[inline(always)]
-    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns {
-        self.all[number].cross(simd, first, grid)
+    fn cross<S: Simd>(
+        &self,
+        simd: S,
+        number: usize,
+        (first, grid): (u32, Grid),
+        band: &mut BandColumns,
+    ) {
+        self.all[number].cross(simd, first, grid, band);
     }
 }
 
@@ -61,11 +67,13 @@ pub(crate) struct RowEdges {
     edges: Vec<[f64; ROWS]>,
     /// How many of `edges` are in use; the others are memory for more.
     used: usize,
+    /// The columns of regions whose edges are to be written.
+    bands: [BandColumns; AT_ONCE],
 }
 
 /// So many regions are crossed before the edges of the first are written: no crossing then waits for
 /// what is unpredictable about the edges of another, and the memory of several is read at once.
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 16;
 
 /// Which edges were added together.
 #[derive(Clone, Copy, Default)]
@@ -123,17 +131,16 @@ impl RowEdges {
         let begin = self.used;
         let mut ends = [begin; ROWS];
         let mut most = begin;
-        let mut bands = [BandColumns::NONE; AT_ONCE];
         for numbers in numbers.chunks(AT_ONCE) {
-            for (band, &number) in bands.iter_mut().zip(numbers) {
-                *band = regions.cross(simd, number as usize, first, grid);
+            for (band, &number) in self.bands.iter_mut().zip(numbers) {
+                regions.cross(simd, number as usize, (first, grid), band);
             }
             // A region has at most four edges in each row.
             most += 4 * numbers.len();
             if self.edges.len() < most {
                 self.edges.resize(most, [0.0; ROWS]);
             }
-            for (band, &number) in bands.iter().zip(numbers) {
+            for (band, &number) in self.bands.iter().zip(numbers) {
                 push(&mut self.edges, &mut ends, number, band);
             }
         }
@@ -232,8 +239,8 @@ mod tests {
     struct RandomRegions(Vec<BandColumns>);
 
     impl BandRegions for RandomRegions {
-        fn cross<S: Simd>(&self, _: S, number: usize, _: u32, _: Grid) -> BandColumns {
-            self.0[number].clone()
+        fn cross<S: Simd>(&self, _: S, number: usize, _: (u32, Grid), band: &mut BandColumns) {
+            *band = self.0[number].clone();
         }
     }
 

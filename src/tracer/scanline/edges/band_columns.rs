@@ -10,6 +10,7 @@ const ALL: u64 = (1 << ROWS) - 1;
 
 /// The columns of a region in each row of a band: where they begin, and where they end. `certain`
 /// lies within `possible`.
+#[derive(Default)]
 #[cfg_attr(test, derive(Clone))]
 pub(crate) struct BandColumns {
     /// The columns outside of which the region has none.
@@ -29,6 +30,12 @@ impl BandColumns {
         filled: 0,
         is_certain: true,
     };
+
+    /// Forgets what was stored: all rows are to be stored anew.
+    pub(crate) fn begin(&mut self) {
+        self.filled = 0;
+        self.is_certain = true;
+    }
 
     /// Stores the columns of as many rows as there are lanes, from row `first` of the band on. Rows
     /// that are not `is_crossed` have none.

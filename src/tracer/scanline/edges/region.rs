@@ -132,27 +132,34 @@ impl<'f> Region<'f> {
         self.ellipse
     }
 
-    /// The region's columns in the band of rows from `row` on.
+    /// Finds the region's columns in the band of rows from `row` on. They are written where they
+    /// are kept: the processor would wait to copy them right after they were written.
     #[inline(always)]
-    pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
-        let mut band = self.enclose(simd, row, grid);
+    pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid, band: &mut BandColumns) {
+        self.enclose(simd, row, grid, band);
         if !band.is_certain {
-            self.narrow(&mut band, row, grid);
+            self.narrow(band, row, grid);
         }
-        band
     }
 
     /// As [`Region::cross`], but compiled once: for callers that cross regions between other work.
     #[inline(never)]
-    pub(crate) fn cross_at(&self, level: Level, row: u32, grid: Grid) -> BandColumns {
-        dispatch!(level, simd => self.cross(simd, row, grid))
+    pub(crate) fn cross_at(&self, level: Level, row: u32, grid: Grid, band: &mut BandColumns) {
+        dispatch!(level, simd => self.cross(simd, row, grid, band));
     }
 
     /// The same as far as bounds on roots tell.
     #[inline(always)]
-    fn enclose<S: Simd>(&self, simd: S, row: u32, grid: Grid) -> BandColumns {
+    fn enclose<S: Simd>(&self, simd: S, row: u32, grid: Grid, band: &mut BandColumns) {
         let half_planes = (self.half_planes, self.clip);
-        enclose(simd, self.ellipse, half_planes, self.rows, row, grid)
+        enclose(
+            simd,
+            self.ellipse,
+            half_planes,
+            (self.rows, row),
+            grid,
+            band,
+        );
     }
 
     /// Decides the columns in doubt one by one, from the outside in.
@@ -226,18 +233,18 @@ impl<'f> Region<'f> {
     }
 }
 
-/// The columns of an intersection in the band of rows from `row` on, as far as bounds on roots
+/// Finds the columns of an intersection in the band of rows from `row` on, as far as bounds on roots
 /// tell. Only `rows` matter.
 #[inline(always)]
 pub(crate) fn enclose<S: Simd>(
     simd: S,
     ellipse: Option<&Ellipse>,
     (half_planes, clip): (&[impl Cut], &[HalfPlane]),
-    rows: (u32, u32),
-    row: u32,
+    (rows, row): ((u32, u32), u32),
     grid: Grid,
-) -> BandColumns {
-    let mut band = BandColumns::NONE;
+    band: &mut BandColumns,
+) {
+    band.begin();
     for first in (0..ROWS).step_by(S::f64s::LEN) {
         let y = offsets::<S>(simd, first) + grid.coordinate(row);
         let mut enclosure = match ellipse {
@@ -269,7 +276,6 @@ pub(crate) fn enclose<S: Simd>(
         ];
         band.store(simd, first, is_crossed, possible, certain);
     }
-    band
 }
 
 #[cfg(test)]
@@ -338,14 +344,17 @@ mod tests {
             let coarse = region.coarse(&arena, grid);
             for first in (0..SIZE).step_by(ROWS) {
                 let level = Level::baseline();
-                let enclosed = || dispatch!(level, simd => region.enclose(simd, first, grid));
+                let mut enclosed = BandColumns::NONE;
+                dispatch!(level, simd => region.enclose(simd, first, grid, &mut enclosed));
                 let coarse = coarse.map(|all| {
-                    let rows = (0, SIZE);
-                    dispatch!(level, simd => enclose(simd, None, (all, &[]), rows, first, grid))
+                    let (all, rows) = ((all, [].as_slice()), ((0, SIZE), first));
+                    let mut band = BandColumns::NONE;
+                    dispatch!(level, simd => enclose(simd, None, all, rows, grid, &mut band));
+                    band
                 });
-                let mut narrowed = enclosed();
+                let mut narrowed = enclosed.clone();
                 region.narrow(&mut narrowed, first, grid);
-                for band in [Some(enclosed()), Some(narrowed), coarse] {
+                for band in [Some(enclosed), Some(narrowed), coarse] {
                     let Some(band) = band else { continue };
                     for row in 0..ROWS {
                         let within = |ends: &[[u32; ROWS]; 2], column: u32| {

@@ -8,6 +8,7 @@
 use bumpalo::Bump;
 use fearless_simd::Level;
 
+use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::prepare::depth::{Depth, Rectangle};
@@ -98,8 +99,9 @@ impl<'f> Tiles<'f> {
             possible: (self.grid.size, 0),
             certain: (0, self.grid.size),
         };
+        let mut band = BandColumns::NONE;
         for first in (from..to).step_by(ROWS) {
-            let band = region.cross_at(self.level, first, self.grid);
+            region.cross_at(self.level, first, self.grid, &mut band);
             for row in 0..((to - first) as usize).min(ROWS) {
                 let ends = |ends: &[[u32; ROWS]; 2]| (ends[0][row], ends[1][row]);
                 let (possible, certain) = (ends(&band.possible), ends(&band.certain));

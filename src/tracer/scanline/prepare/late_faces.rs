@@ -113,26 +113,33 @@ pub(super) struct KeptRegions<'a, 'f> {
     pub(super) all: &'a [KeptRegion<'f>],
     /// The half-planes of the solid's outline, and its rows.
     pub(super) outline: (&'f [HalfPlane], (u32, u32)),
-    /// The columns of a shadow in the band, made again.
-    pub(super) again: &'a dyn Fn(Cast) -> BandColumns,
+    /// Finds the columns of a shadow in the band, made again.
+    pub(super) again: &'a dyn Fn(Cast, &mut BandColumns),
 }
 
 impl BandRegions for KeptRegions<'_, '_> {
     #[inline(always)]
-    fn cross<S: Simd>(&self, simd: S, number: usize, first: u32, grid: Grid) -> BandColumns {
+    fn cross<S: Simd>(
+        &self,
+        simd: S,
+        number: usize,
+        (first, grid): (u32, Grid),
+        band: &mut BandColumns,
+    ) {
         match &self.all[number] {
-            KeptRegion::Whole(region) => region.cross_at(simd.level(), first, grid),
+            KeptRegion::Whole(region) => region.cross_at(simd.level(), first, grid, band),
             KeptRegion::Shadow {
                 half_planes, cast, ..
             } => {
                 let (outline, rows) = self.outline;
-                let coarse = half_planes.map(|half_planes| {
-                    enclose(simd, None, (half_planes, outline), rows, first, grid)
-                });
-                match coarse {
-                    Some(band) if band.is_certain => band,
-                    _ => (self.again)(*cast),
+                if let Some(half_planes) = half_planes {
+                    let all = (*half_planes, outline);
+                    enclose(simd, None, all, (rows, first), grid, band);
+                    if band.is_certain {
+                        return;
+                    }
                 }
+                (self.again)(*cast, band);
             }
         }
     }

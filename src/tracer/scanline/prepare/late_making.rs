@@ -11,6 +11,7 @@ use crate::image::MAX_SIZE;
 use crate::scene::Solid;
 use crate::tracer::arena::collect;
 use crate::tracer::decision::Decision;
+use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind, RegionKinds, Regions};
@@ -174,9 +175,9 @@ impl<'f> LateFaces<'f> {
             } => reach((u32::from(*from), u32::from(*to))),
         });
         let numbers = collect(spare, numbers.map(|(number, _)| number));
-        let again = |cast| {
+        let again = |cast, band: &mut BandColumns| {
             let shadow = self.shadow(cast, source, spare);
-            shadow.cross_at(level, first, grid)
+            shadow.cross_at(level, first, grid, band);
         };
         let regions = KeptRegions {
             all: regions,
