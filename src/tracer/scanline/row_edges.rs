@@ -71,8 +71,8 @@ pub(crate) struct RowEdges {
     bands: [BandColumns; AT_ONCE],
 }
 
-/// So many regions are crossed before the edges of the first are written: no crossing then waits for
-/// what is unpredictable about the edges of another, and the memory of several is read at once.
+/// So many regions are crossed before the edges of the first are written: no crossing then waits
+/// for what is unpredictable about the edges of another, and the memory of several is read at once.
 const AT_ONCE: usize = 16;
 
 /// Which edges were added together.

@@ -233,8 +233,8 @@ impl<'f> Region<'f> {
     }
 }
 
-/// Finds the columns of an intersection in the band of rows from `row` on, as far as bounds on roots
-/// tell. Only `rows` matter.
+/// Finds the columns of an intersection in the band of rows from `row` on, as far as bounds on
+/// roots tell. Only `rows` matter.
 #[inline(always)]
 pub(crate) fn enclose<S: Simd>(
     simd: S,
