@@ -20,8 +20,8 @@ void main() {
     // texelFetch takes the texel's bits as they are.
     color = vec4(texelFetch(picture, ivec2(texel), 0).rgb, 1.0);
     if (steps > 0.0) {
-        // OpenGL lets drivers round to a step that is not the nearest: from a step itself, they cannot. NaN is not greater than 0.
-        vec3 rounded = roundEven(min(color.rgb, 1.0) * steps) * (1.0 / steps);
-        color.rgb = mix(vec3(0.0), rounded, greaterThan(color.rgb, vec3(0.0)));
+        // OpenGL lets drivers round to a step that is not the nearest: from a step itself, they cannot. NaN becomes 0.
+        vec3 shown = min(max(vec3(0.0), color.rgb), 1.0);
+        color.rgb = roundEven(shown * steps) * (1.0 / steps);
     }
 }
