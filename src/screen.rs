@@ -231,7 +231,8 @@ impl Screen {
             gl.use_program(Some(self.program.name));
             gl.uniform_2_i32(self.origin.as_ref(), placement.origin.x, placement.origin.y);
             gl.uniform_2_u32(self.extent.as_ref(), placement.size.x, placement.size.y);
-            gl.uniform_1_f32(self.steps.as_ref(), rounding::steps(gl).unwrap_or(0.0));
+            let [red, green, blue] = rounding::steps(gl).unwrap_or_default();
+            gl.uniform_3_f32(self.steps.as_ref(), red, green, blue);
             gl.active_texture(glow::TEXTURE0);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.texture));
             gl.bind_vertex_array(Some(self.vertex_array));

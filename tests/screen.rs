@@ -286,8 +286,12 @@ fn texels_are_exact_where_floats_no_longer_are() {
 /// Draws samples around the middles of the `steps` between 0 and 1, and some beyond, into a
 /// framebuffer of `format`. What it holds of each pixel, as four bytes of `kind`, must be what
 /// `pixel` says of the samples' nearest steps.
-fn holds_the_nearest_steps(format: u32, kind: u32, steps: u32, pixel: fn([u32; 3]) -> u32) {
-    let Some(gl) = Gl::open() else { return };
+fn holds_the_nearest_steps(
+    gl: &Gl,
+    (format, kind): (u32, u32),
+    steps: u32,
+    pixel: fn([u32; 3]) -> u32,
+) {
     let mut samples = vec![
         f32::NAN,
         f32::INFINITY,
@@ -319,21 +323,48 @@ fn holds_the_nearest_steps(format: u32, kind: u32, steps: u32, pixel: fn([u32; 3
     }
 }
 
+/// The bytes of a pixel of 8 bits each.
+fn bytes([red, green, blue]: [u32; 3]) -> u32 {
+    u32::from_ne_bytes([red as u8, green as u8, blue as u8, 255])
+}
+
 #[test]
 fn eight_bits_are_the_nearest_byte_ties_to_even() {
-    holds_the_nearest_steps(
-        glow::RGBA8,
-        glow::UNSIGNED_BYTE,
-        255,
-        |[red, green, blue]| u32::from_ne_bytes([red as u8, green as u8, blue as u8, 255]),
-    );
+    let Some(gl) = Gl::open() else { return };
+    holds_the_nearest_steps(&gl, (glow::RGBA8, glow::UNSIGNED_BYTE), 255, bytes);
 }
 
 #[test]
 fn ten_bits_are_the_nearest_step_ties_to_even() {
-    let kind = glow::UNSIGNED_INT_2_10_10_10_REV;
-    holds_the_nearest_steps(glow::RGB10_A2, kind, 1023, |[red, green, blue]| {
+    let Some(gl) = Gl::open() else { return };
+    let format = (glow::RGB10_A2, glow::UNSIGNED_INT_2_10_10_10_REV);
+    holds_the_nearest_steps(&gl, format, 1023, |[red, green, blue]| {
         3 << 30 | blue << 20 | green << 10 | red
+    });
+}
+
+/// The shader rounds, not the driver alone: in 8 bits that are said to be 4, every colour is a
+/// multiple of 17.
+#[test]
+fn colours_are_rounded_to_the_steps_that_the_driver_tells() {
+    /// # Safety
+    /// As glGetFramebufferAttachmentParameteriv.
+    unsafe extern "system" fn parameter(_: u32, _: u32, name: u32, value: *mut i32) {
+        let answer = match name {
+            glow::FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE => glow::RENDERBUFFER as i32,
+            glow::FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE => glow::UNSIGNED_NORMALIZED as i32,
+            _ => 4,
+        };
+        // SAFETY: the caller passes room for an integer.
+        unsafe { *value = answer };
+    }
+    let replaced = Gl::with(|name, real| match name.to_bytes() {
+        b"glGetFramebufferAttachmentParameteriv" => parameter as *const c_void,
+        _ => real,
+    });
+    let Some(gl) = replaced else { return };
+    holds_the_nearest_steps(&gl, (glow::RGBA8, glow::UNSIGNED_BYTE), 15, |steps| {
+        bytes(steps.map(|step| 17 * step))
     });
 }
 

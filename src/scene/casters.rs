@@ -150,8 +150,8 @@ impl Casters {
         near
     }
 
-    /// Whether a solid certainly casts no shadow on a sphere, or on a face with the prism `light` on
-    /// it.
+    /// Whether a solid certainly casts no shadow on a sphere, or on a face with the prism `light`
+    /// on it.
     fn misses(&self, caster: u16, light: Option<&Prism>, of_receiver: Balls<'_>) -> bool {
         let caster = usize::from(caster);
         let misses = |balls| light.is_some_and(|light| light.misses(balls));

@@ -3,7 +3,7 @@
 uniform sampler2D picture;
 uniform ivec2 origin; // the picture's bottom left corner in the framebuffer
 uniform uvec2 extent; // its width and height there
-uniform float steps;  // of the framebuffer's colours between 0 and 1; 0 where it holds floats
+uniform vec3 steps;   // of the framebuffer's red, green and blue between 0 and 1; 0 where it holds floats
 
 out vec4 color;
 
@@ -19,9 +19,10 @@ void main() {
     texel += uvec2(lessThanEqual((texel + 1u) * divisor, dividend));
     // texelFetch takes the texel's bits as they are.
     color = vec4(texelFetch(picture, ivec2(texel), 0).rgb, 1.0);
-    if (steps > 0.0) {
-        // OpenGL lets drivers round to a step that is not the nearest: from a step itself, they cannot. NaN becomes 0.
+    if (steps.r > 0.0) {
+        // OpenGL lets drivers round to a step that is not the nearest; this near to one, they take it. What max makes of NaN,
+        // GLSL leaves open: 0 on the drivers that this was tried on.
         vec3 shown = min(max(vec3(0.0), color.rgb), 1.0);
-        color.rgb = roundEven(shown * steps) * (1.0 / steps);
+        color.rgb = roundEven(shown * steps) / steps;
     }
 }

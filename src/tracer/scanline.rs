@@ -32,6 +32,8 @@
 //!   region: `shade/` computes it.
 //! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
 //!   mostly nothing but the columns of the edges has changed.
+//! - `row_edges.rs` sorts, band by band, edges whose order no row keeps for the next: those of the
+//!   following two.
 //! - `low.rs` lays the regions of few rows over those gaps: a crowd of them would leave nothing in
 //!   order from one row to the next.
 //! - `faces.rs` divides what a row shows of a tetrahedron on which many shadows may fall: its
@@ -132,7 +134,7 @@ pub(super) struct RowTracer<'f> {
     pixels: &'f dyn RowPixels,
     frame: PreparedFrame<'f>,
     late: LateSource<'f>,
-    /// The number of edges of late faces from which on a thread forgets them.
+    /// The number of places for edges of late faces from which on a thread forgets them.
     late_edges: usize,
     level: Level,
     precision: Precision,

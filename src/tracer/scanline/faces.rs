@@ -12,7 +12,7 @@ use crate::tracer::scanline::visibility::visible::Shown;
 pub(crate) struct FaceSplitter {
     /// The first row of the band.
     first: Option<u32>,
-    /// The room for edges from which on they are forgotten before others are added.
+    /// The number of places from which on edges are forgotten before others are added.
     enough: usize,
     slots: Vec<Slot>,
     /// By the number of late faces, the slot that they had last.
@@ -31,9 +31,9 @@ struct Slot {
 }
 
 impl FaceSplitter {
-    /// Prepares for rows of a frame in which so many solids have late faces. Where there is
-    /// room for `enough` edges, all are forgotten before others are added: no crowd takes more
-    /// memory than twice as many and the edges of one solid.
+    /// Prepares for rows of a frame in which so many solids have late faces. Where edges have
+    /// `enough` places, all are forgotten before others are added: no crowd takes more memory than
+    /// that and the edges of one solid, but for the room in which a vector grows.
     pub(crate) fn begin(&mut self, count: usize, enough: usize) {
         self.first = None;
         self.enough = enough;
@@ -88,7 +88,7 @@ impl FaceSplitter {
 
     /// Adds the edges of the late faces of this number.
     fn add(&mut self, number: usize, cross: impl FnOnce(&mut RowEdges) -> Added) {
-        if self.edges.room() >= self.enough {
+        if self.edges.places() >= self.enough {
             self.forget();
         }
         let edges = cross(&mut self.edges);

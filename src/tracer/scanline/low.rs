@@ -1,9 +1,9 @@
 //! Low regions, of few rows: a small sphere, its mirror image, its shadow.
 //!
 //! Between two bands, half of them come and go, and what was known of the order of edges and of
-//! gaps is of no use to the next row. So they are no part of the active edges. A row sorts their
-//! edges and lays them over the gaps of the active edges: a gap without low regions shows what it
-//! showed without them, and the others are resolved in each row.
+//! gaps is of no use to the next row. So they are no part of the active edges. Their edges are
+//! sorted band by band, and a row lays its own over the gaps of the active edges: a gap without low
+//! regions shows what it showed without them, and the others are resolved in each row.
 
 use fearless_simd::Level;
 

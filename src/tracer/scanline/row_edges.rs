@@ -12,7 +12,10 @@ use crate::tracer::scanline::grid::{Grid, ROWS};
 
 /// An edge of a region after its column in a row, in one number: of two edges, that with the
 /// smaller number comes first.
-#[derive(Clone, Copy, PartialEq, PartialOrd)]
+///
+/// All numbers lie in [1, 2), where no two are equal, and none is a NaN or subnormal: minimum and
+/// maximum order them alike on every processor.
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct EdgeAt(f64);
 
 impl EdgeAt {
@@ -23,7 +26,7 @@ impl EdgeAt {
     const NONE: EdgeAt = EdgeAt::new(EdgeAt::BEYOND, Edge(u32::MAX));
 
     const fn new(column: u32, edge: Edge) -> EdgeAt {
-        // The bits after those of the exponent are the column and the edge.
+        // After the exponent of 1, 20 bits for the column and 32 for the edge.
         let bits = (column as u64) << 32 | edge.0 as u64;
         EdgeAt(f64::from_bits(1.0_f64.to_bits() | bits))
     }
@@ -44,6 +47,7 @@ const _: () = assert!(MAX_SIZE < EdgeAt::BEYOND);
 /// Regions that bands can cross.
 pub(crate) trait BandRegions {
     /// Finds the columns of the region of this number in the band of rows from the given one on.
+    /// `band` may hold anything before.
     fn cross<S: Simd>(&self, simd: S, number: usize, first: (u32, Grid), band: &mut BandColumns);
 }
 
@@ -97,12 +101,13 @@ impl RowEdges {
         self.used = 0;
     }
 
-    /// For how many edges there is room in the memory that is in use.
-    pub(crate) fn room(&self) -> usize {
+    /// The number of places for edges that are in use, those that stay empty because another row of
+    /// the band has more edges included.
+    pub(crate) fn places(&self) -> usize {
         ROWS * self.used
     }
 
-    /// Adds the edges of the regions of these numbers in the band of rows from `first` on.
+    /// Adds the edges of the regions of these numbers in the band of rows from `first` on, sorted.
     pub(crate) fn add(
         &mut self,
         regions: &impl BandRegions,
@@ -118,7 +123,7 @@ impl RowEdges {
         })
     }
 
-    /// The same; the edges are not sorted yet.
+    /// The same without sorting them.
     #[inline(always)]
     fn cross_all<S: Simd>(
         &mut self,

@@ -10,7 +10,6 @@ const ALL: u64 = (1 << ROWS) - 1;
 
 /// The columns of a region in each row of a band: where they begin, and where they end. `certain`
 /// lies within `possible`.
-#[derive(Default)]
 #[cfg_attr(test, derive(Clone))]
 pub(crate) struct BandColumns {
     /// The columns outside of which the region has none.
@@ -21,6 +20,12 @@ pub(crate) struct BandColumns {
     pub(crate) filled: u64,
     /// Whether all possible columns are certain.
     pub(crate) is_certain: bool,
+}
+
+impl Default for BandColumns {
+    fn default() -> Self {
+        BandColumns::NONE
+    }
 }
 
 impl BandColumns {

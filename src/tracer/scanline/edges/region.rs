@@ -132,8 +132,8 @@ impl<'f> Region<'f> {
         self.ellipse
     }
 
-    /// Finds the region's columns in the band of rows from `row` on. They are written where they
-    /// are kept: the processor would wait to copy them right after they were written.
+    /// Finds the region's columns in the band of rows from `row` on. They are written where the
+    /// caller keeps them: who crosses several regions before it reads the first does not wait.
     #[inline(always)]
     pub(crate) fn cross<S: Simd>(&self, simd: S, row: u32, grid: Grid, band: &mut BandColumns) {
         self.enclose(simd, row, grid, band);

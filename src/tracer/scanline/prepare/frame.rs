@@ -29,7 +29,7 @@ pub(crate) struct Crowd {
     pub(crate) late_from: u64,
     /// How many bytes the regions of late faces may take, besides what tells their casters.
     pub(crate) late_bytes: usize,
-    /// The number of edges of late faces from which on a thread forgets them.
+    /// The number of places for edges of late faces from which on a thread forgets them.
     pub(crate) late_edges: usize,
 }
 

@@ -325,8 +325,8 @@ impl<'f> SphereConstants<'f> {
             channel(color.z, blue),
         ];
         let specular = channels.iter().fold(0.0_f64, |a, [.., s]| a.max(s.abs()));
-        // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three products round,
-        // then two products and two sums, and at last the sum of a sample and its bound.
+        // |n·l| ≤ 1, but for its error, and a power is at most 1.1 of its own; three products
+        // round, then two products and two sums, and at last the sum of a sample and its bound.
         let errors = bounds
             .errors(sizes(&to_light))
             .map(|light| ((1.1 + light) * carried + diffuse * light + rest) * INFLATION);

@@ -45,14 +45,15 @@ impl Paint {
 /// The bits of a colour's three samples.
 pub(crate) type Bits = (u64, u32);
 
-/// The paints of a frame while it is prepared.
+/// Room for the paints of a solid with late faces: two for each of its front faces, of which most
+/// have three at most. A frame's paints take more.
+const FEW: usize = 6;
+
+/// The paints of a frame, or of late faces, while they are prepared.
 pub(crate) struct Paints<'f, 'c> {
     color: &'c dyn Fn(Decision) -> [f32; 3],
     all: Vec<'f, Paint>,
 }
-
-/// Late faces have at most two paints each, and few solids more than three.
-const FEW: usize = 6;
 
 /// The number of a paint.
 #[derive(Clone, Copy, PartialEq, Eq)]
