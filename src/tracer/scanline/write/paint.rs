@@ -45,8 +45,8 @@ impl Paint {
 /// The bits of a colour's three samples.
 pub(crate) type Bits = (u64, u32);
 
-/// Room for the paints of a solid with late faces: two for each of its front faces, of which most
-/// have three at most. A frame's paints take more.
+/// Room for the paints of a solid with late faces: two for each of its front faces, mostly three or
+/// fewer. The paints of a frame take more, and grow.
 const FEW: usize = 6;
 
 /// The paints of a frame, or of late faces, while they are prepared.
