@@ -38,8 +38,8 @@
 //!   order from one row to the next.
 //! - `faces.rs` divides what a row shows of a tetrahedron on which many shadows may fall: its
 //!   creases and shadows are no active edges. They are prepared when a row first shows the solid
-//!   (`late_making`), since most solids of such a crowd are hidden, and kept in little memory
-//!   (`edges/coarse`), or made again in each band, since there may be millions.
+//!   (`late_making`), since most solids of such a crowd are hidden, and kept in little memory,
+//!   or made again in each band, since there may be millions.
 //! - `visibility/` resolves a gap: which regions cover it (`coverage`), and which solid is in front
 //!   by a separating plane (`separation`) or a depth test (`depth_test`).
 //! - `shade/` shades spheres, many pixels at a time (`run`), by one formula (`equation`), with

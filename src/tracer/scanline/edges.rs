@@ -3,7 +3,6 @@
 pub(super) mod band_columns;
 #[cfg(test)]
 mod bounds_tests;
-pub(super) mod coarse;
 pub(super) mod ellipse;
 pub(super) mod enclosure;
 pub(super) mod half_plane;

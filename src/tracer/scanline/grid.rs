@@ -1,8 +1,9 @@
 //! Columns and rows of pixels, and their coordinates X and Y on the screen.
 
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Simd, SimdFloatElement};
 
+use crate::image::MAX_SIZE;
 use crate::tracer::view_space::{self, PIXEL, number_at};
 
 /// Rows are crossed so many at a time.
@@ -40,14 +41,30 @@ impl Grid {
 
     /// The first column at or after each position, given in columns: a whole number.
     #[inline(always)]
-    pub(crate) fn ceil_all<S: Simd>(&self, positions: S::f64s) -> S::f64s {
-        positions.ceil().max(0.0).min(f64::from(self.size))
+    pub(crate) fn ceil_all<S: Simd, V>(&self, positions: V) -> V
+    where
+        V: SimdFloat<S, Element: Position>,
+    {
+        self.clamp_all(positions.ceil())
     }
 
     /// The number of columns at or before each position, given in columns.
     #[inline(always)]
-    pub(crate) fn count_all<S: Simd>(&self, positions: S::f64s) -> S::f64s {
-        (positions.floor() + 1.0).max(0.0).min(f64::from(self.size))
+    pub(crate) fn count_all<S: Simd, V>(&self, positions: V) -> V
+    where
+        V: SimdFloat<S, Element: Position>,
+    {
+        self.clamp_all(positions.floor() + V::Element::of(1.0))
+    }
+
+    /// The nearest column, or N.
+    #[inline(always)]
+    fn clamp_all<S: Simd, V>(&self, columns: V) -> V
+    where
+        V: SimdFloat<S, Element: Position>,
+    {
+        let [first, end] = [0.0, self.size as f32].map(V::Element::of);
+        columns.max(first).min(end)
     }
 
     /// The first column at or after a position given in columns.
@@ -78,37 +95,94 @@ impl Grid {
     }
 }
 
-/// The coordinates of neighbouring rows or columns, relative to the first.
-const OFFSETS: [f64; ROWS] = [
-    0.0,
-    PIXEL,
-    2.0 * PIXEL,
-    3.0 * PIXEL,
-    4.0 * PIXEL,
-    5.0 * PIXEL,
-    6.0 * PIXEL,
-    7.0 * PIXEL,
-];
+/// f32 or f64: the floats of coordinates and of positions in columns.
+pub(crate) trait Position: SimdFloatElement {
+    /// The coordinates of neighbouring rows or columns, relative to the first.
+    const OFFSETS: [Self; ROWS];
+
+    /// A number that f32 holds.
+    fn of(number: f32) -> Self;
+
+    /// Stores whole numbers of columns.
+    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
+    where
+        V: SimdFloat<S, Element = Self>;
+}
+
+// f32 holds all coordinates: they are multiples of one half below 2²³.
+const _: () = assert!(6 * MAX_SIZE < 1 << 24);
+
+impl Position for f32 {
+    const OFFSETS: [f32; ROWS] = {
+        let mut offsets = [0.0; ROWS];
+        let mut number = 0;
+        while number < ROWS {
+            offsets[number] = PIXEL as f32 * number as f32;
+            number += 1;
+        }
+        offsets
+    };
+
+    #[inline(always)]
+    fn of(number: f32) -> f32 {
+        number
+    }
+
+    #[inline(always)]
+    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
+    where
+        V: SimdFloat<S, Element = f32>,
+    {
+        // With 2²³ added, a whole number's bits stand behind the exponent's.
+        const SHIFT: f32 = (1 << 23) as f32;
+        let shifted = numbers + SHIFT;
+        for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
+            *column = number.to_bits() ^ SHIFT.to_bits();
+        }
+    }
+}
+
+impl Position for f64 {
+    const OFFSETS: [f64; ROWS] = {
+        let mut offsets = [0.0; ROWS];
+        let mut number = 0;
+        while number < ROWS {
+            offsets[number] = PIXEL * number as f64;
+            number += 1;
+        }
+        offsets
+    };
+
+    #[inline(always)]
+    fn of(number: f32) -> f64 {
+        f64::from(number)
+    }
+
+    #[inline(always)]
+    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
+    where
+        V: SimdFloat<S, Element = f64>,
+    {
+        // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the
+        // upper half.
+        let shifted = numbers + f64::from_bits((1023 + 52) << 52);
+        for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
+            *column = number.to_bits() as u32;
+        }
+    }
+}
 
 /// As many offsets as there are lanes, from that of number `first` on.
 #[inline(always)]
-pub(crate) fn offsets<S: Simd>(simd: S, first: usize) -> S::f64s {
-    S::f64s::from_slice(simd, &OFFSETS[first..first + S::f64s::LEN])
+pub(crate) fn offsets<S: Simd, V>(simd: S, first: usize) -> V
+where
+    V: SimdFloat<S, Element: Position>,
+{
+    V::from_slice(simd, &V::Element::OFFSETS[first..first + V::LEN])
 }
 
 /// X in columns.
 #[inline(always)]
 pub(crate) fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
     x * (1.0 / PIXEL) + grid.half
-}
-
-/// Stores whole numbers of columns, below 2³².
-#[inline(always)]
-pub(crate) fn store_columns<S: Simd>(numbers: S::f64s, columns: &mut [u32]) {
-    // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the upper
-    // half.
-    let shifted = numbers + f64::from_bits((1023 + 52) << 52);
-    for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
-        *column = number.to_bits() as u32;
-    }
 }

@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use crate::tracer::scanline::grid::{ROWS, store_columns};
+use crate::tracer::scanline::grid::{Position, ROWS};
 
 /// A bit for each row of a band.
 const ALL: u64 = (1 << ROWS) - 1;
@@ -45,26 +45,28 @@ impl BandColumns {
     /// Stores the columns of as many rows as there are lanes, from row `first` of the band on. Rows
     /// that are not `is_crossed` have none.
     #[inline(always)]
-    pub(crate) fn store<S: Simd>(
+    pub(crate) fn store<S: Simd, V>(
         &mut self,
         simd: S,
         first: usize,
-        is_crossed: S::mask64s,
-        possible: [S::f64s; 2],
-        certain: [S::f64s; 2],
-    ) {
+        is_crossed: V::Mask,
+        possible: [V; 2],
+        certain: [V; 2],
+    ) where
+        V: SimdFloat<S, Element: Position>,
+    {
         let [from, to] = possible;
         let is_filled = is_crossed & from.simd_lt(to);
-        let from = is_filled.select(from, S::f64s::splat(simd, 0.0));
+        let from = is_filled.select(from, V::splat(simd, V::Element::of(0.0)));
         let to = is_filled.select(to, from);
-        store_columns::<S>(from, &mut self.possible[0][first..]);
-        store_columns::<S>(to, &mut self.possible[1][first..]);
+        V::Element::store(from, &mut self.possible[0][first..]);
+        V::Element::store(to, &mut self.possible[1][first..]);
         let [begin, end] = certain;
         let is_some = is_filled & begin.simd_lt(end);
         let begin = is_some.select(begin, from);
         let end = is_some.select(end, from);
-        store_columns::<S>(begin, &mut self.certain[0][first..]);
-        store_columns::<S>(end, &mut self.certain[1][first..]);
+        V::Element::store(begin, &mut self.certain[0][first..]);
+        V::Element::store(end, &mut self.certain[1][first..]);
         self.filled |= is_filled.to_bitmask() << first;
         self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }

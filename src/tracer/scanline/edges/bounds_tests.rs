@@ -114,13 +114,14 @@ fn check_tetrahedra(
     grid: Grid,
     shares: &mut Shares,
 ) {
+    let arena = Bump::new();
     let (tetrahedra, exact) = (&bounded.view.tetrahedra, &truth.view.tetrahedra);
     for index in 0..tetrahedra.count() {
         let (t, exact) = (tetrahedra.get(index), exact.get(index));
         for wall in met(t.eye_signs) {
             let half_space = t.solid.half_space(wall, eye_direction().vector);
             let exact = exact.solid.half_space(wall, eye_direction().vector);
-            let half_plane = HalfPlane::of(&half_space, None, grid);
+            let half_plane = HalfPlane::of(&half_space, None, (grid, &arena));
             for row in (0..SIZE).step_by(7) {
                 let y = grid.coordinate(row);
                 let all = [0.0, f64::from(SIZE)];

@@ -365,7 +365,7 @@ impl Ellipse {
         grid: Grid,
     ) -> ColumnEnclosure<S::f64s> {
         let zero = S::f64s::splat(simd, 0.0);
-        let none = S::f64s::splat(simd, NOWHERE);
+        let none = S::f64s::splat(simd, f64::from(NOWHERE));
         if !self.is_bounded {
             let all = S::f64s::splat(simd, f64::from(grid.size));
             return ColumnEnclosure {

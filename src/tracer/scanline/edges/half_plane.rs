@@ -2,6 +2,9 @@
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec as Growing;
+use bumpalo_herd::Member;
+#[cfg(test)]
+use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 
@@ -10,73 +13,173 @@ use crate::number::{Bounded, FourBounded, Real, Ring};
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
-use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::grid::{Grid, Position};
 use crate::tracer::tetrahedron::{Tetrahedron, Wall};
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{PIXEL, number_at};
 
 /// The pixels where constant + `per_x` X + `per_y` Y ≥ 0, or > 0.
 #[derive(Clone, Copy)]
-pub(crate) struct HalfPlane {
+pub(crate) struct HalfPlane<'f> {
+    border: Border,
+    /// Kept apart, since few pixels need them: so the borders of many half-planes are at hand.
+    terms: &'f Terms,
+}
+
+/// What decides on which side a pixel is.
+#[derive(Clone, Copy)]
+struct Terms {
     constant: Bounded,
     per_x: Bounded,
     per_y: Bounded,
-    /// Whether pixels with a sum of 0 belong to it.
+    /// Whether pixels with a sum of 0 belong to the half-plane.
     closed: bool,
-    border: Border,
 }
 
-/// The border of a half-plane, as rows cross it.
+/// The border of a half-plane, as rows cross it: in f32, with bounds that cover that.
+///
+/// A row crosses a sloping border at its root, at least `low` + `per_y` · Y and at most `high` +
+/// `per_y` · Y, in columns; on the side on which the half-plane does not end, the bound is infinite.
 #[derive(Clone, Copy)]
-enum Border {
-    /// A row crosses it at a root.
-    Sloping(Root),
-    /// The border is level, or f64 does not tell that it is not.
-    Horizontal {
-        /// A bound on the error of constant + per_y · Y as a stand-in for the whole sum.
-        error: f64,
-    },
+pub(crate) struct Border {
+    per_y: f32,
+    /// Or for a level border, the constant of the sum, whose `per_y` is that above.
+    low: f32,
+    /// Or for a level border, a bound on the error of that sum as a stand-in for the whole one.
+    high: f32,
+    /// How far one bound on the root can be from another on its other side; [`LEVEL`] for a border
+    /// that is level, or of which f64 does not tell that it is not.
+    doubt: f32,
 }
 
-/// Where the border crosses a row, in columns: at + per_y · Y.
+/// See [`Border`].
+const LEVEL: f32 = -1.0;
+
+/// The largest relative error of one rounding to f32.
+const V: f64 = f32::EPSILON as f64 / 2.0;
+
+/// 1 + 8v: what a bound of a few roundings to f32 is multiplied by, which rounds itself.
+const ROUND_UP: f64 = 1.0 + 8.0 * V;
+
+impl Border {
+    /// The border of a half-plane of which every pixel is in doubt.
+    const IN_DOUBT: Border = Border {
+        per_y: 0.0,
+        low: 0.0,
+        high: f32::INFINITY,
+        doubt: LEVEL,
+    };
+
+    /// The borders of four half-planes.
+    #[inline(always)]
+    fn four<S: Simd>(
+        simd: S,
+        [constant, per_x, per_y]: &Height<FourBounded<S>>,
+        grid: Grid,
+    ) -> [Border; 4] {
+        let (max, size) = (grid.max, f64::from(grid.size));
+        // The part of the sum's error that comes from the coefficients.
+        let carried = constant.error() + (per_x.error() + per_y.error()) * max;
+        let magnitude = constant.value().abs() + per_y.value().abs() * max;
+        let magnitude_of_x = per_x.value().abs() * max;
+        // In columns the root is N/2 − (constant + per_y · Y)/(3 · per_x), and moves by the same
+        // part of the sum's error. The inverse of 3 · per_x rounds by 2u, the root's two numbers by
+        // 2u more: less than 8u of the terms' magnitudes, and of N/2.
+        let inverse = f64x4::splat(simd, 1.0) / (per_x.value() * PIXEL);
+        let at = -(constant.value() * inverse) + grid.half;
+        let root_per_y = -(per_y.value() * inverse);
+        let slack =
+            ((carried + magnitude * (8.0 * U)) * inverse.abs() + 16.0 * U * size) * INFLATION;
+        // In f32, per_y rounds by v, which moves the root by v of |per_y · Y|, and so does the
+        // product with Y; the bound at Y = 0 rounds by v of itself, and the sum by v of itself. The
+        // sum is between 0 and N where it matters: if it were a bound on the wrong side of the root
+        // beyond N, the root would be there, too.
+        let slack = (slack + (at.abs() + root_per_y.abs() * (2.0 * max) + size) * V) * ROUND_UP;
+        // A bound lies within twice the slack from the root, and this one on its other side after
+        // one more rounding.
+        let doubt = (slack * 2.0 + size * V) * ROUND_UP;
+        // Then f32 holds all bounds.
+        let is_small = slack.simd_lt(2.0_f64.powi(90));
+        // The sum rounds by less than 2u of its terms twice.
+        let error = (carried + magnitude * (4.0 * U)) * INFLATION;
+        let is_sloping = is_small & !magnitude_of_x.simd_le(error);
+        let is_rightward = inverse.simd_gt(0.0);
+        // In f32 the terms round by v of themselves, the product by v, and the sum by v of its
+        // terms; where they are tiny, by less than the smallest normal number.
+        let level_error = (error + magnitude_of_x + magnitude * (3.0 * V)) * ROUND_UP
+            + f64::from(f32::MIN_POSITIVE);
+        let infinity = f64x4::splat(simd, f64::INFINITY);
+        let low = is_rightward.select(at - slack, -infinity);
+        let high = is_rightward.select(infinity, at + slack);
+        let per_y = is_sloping.select(root_per_y, per_y.value());
+        let low = is_sloping.select(low, constant.value());
+        let high = is_sloping.select(high, level_error);
+        let doubt = is_sloping.select(doubt, f64x4::splat(simd, f64::from(LEVEL)));
+        let mut borders = [Border::IN_DOUBT; 4];
+        for (i, border) in borders.iter_mut().enumerate() {
+            *border = Border {
+                per_y: per_y.as_slice()[i] as f32,
+                low: low.as_slice()[i] as f32,
+                high: high.as_slice()[i] as f32,
+                doubt: doubt.as_slice()[i] as f32,
+            };
+        }
+        borders
+    }
+
+    /// Whether f64 does not tell that the border slopes.
+    fn is_level(&self) -> bool {
+        self.doubt == LEVEL
+    }
+
+    /// Whether a row can enter the half-plane at the root, and not leave it there.
+    fn is_left_side(&self) -> bool {
+        self.low > f32::NEG_INFINITY
+    }
+
+    /// The two bounds on the root of a sloping border at Y = 0, and the change per Y, in columns.
+    pub(super) fn root(&self) -> Option<Root> {
+        let [per_y, low, high, doubt] =
+            [self.per_y, self.low, self.high, self.doubt].map(f64::from);
+        let rightward = self.is_left_side();
+        let ends = if rightward {
+            [low, low + doubt]
+        } else {
+            [high - doubt, high]
+        };
+        let root = Root {
+            ends,
+            per_y,
+            rightward,
+        };
+        (!self.is_level()).then_some(root)
+    }
+}
+
+/// Where the border crosses a row, in columns.
 #[derive(Clone, Copy)]
 pub(super) struct Root {
-    pub(super) at: f64,
+    /// Bounds at Y = 0.
+    pub(super) ends: [f64; 2],
     pub(super) per_y: f64,
-    /// A bound on the error in columns.
-    pub(super) slack: f64,
     /// Whether the half-plane lies to the right of the root, and not to the left.
     pub(super) rightward: bool,
 }
 
-impl Root {
-    /// Intersects enclosures of as many rows as there are lanes with the half-plane.
-    #[inline(always)]
-    pub(super) fn cut<S: Simd>(&self, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
-        let ColumnEnclosure { possible, certain } = enclosure;
-        let root_column = y * self.per_y + self.at;
-        // No processor can predict on which side a half-plane lies: each bounds both ends, one of
-        // them at infinity. The root is finite, as `HalfPlane` made sure when it called the border
-        // sloping, so that no sum with infinity is a NaN.
-        const BEYOND: [[f64; 2]; 2] = [[f64::INFINITY, 0.0], [0.0, f64::INFINITY]];
-        let [left, right] = BEYOND[usize::from(self.rightward)];
-        possible[0] = possible[0].max(root_column - (self.slack + left));
-        certain[0] = certain[0].max(root_column + (self.slack - left));
-        possible[1] = possible[1].min(root_column + (self.slack + right));
-        certain[1] = certain[1].min(root_column - (self.slack - right));
-    }
-}
-
-impl HalfPlane {
-    /// A half-plane of which every pixel is in doubt.
-    pub(crate) const IN_DOUBT: HalfPlane = HalfPlane {
+impl Terms {
+    const IN_DOUBT: Terms = Terms {
         constant: Bounded::UNKNOWN,
         per_x: Bounded::UNKNOWN,
         per_y: Bounded::UNKNOWN,
         closed: false,
-        border: Border::Horizontal {
-            error: f64::INFINITY,
-        },
+    };
+}
+
+impl<'f> HalfPlane<'f> {
+    /// A half-plane of which every pixel is in doubt.
+    pub(crate) const IN_DOUBT: HalfPlane<'static> = HalfPlane {
+        border: Border::IN_DOUBT,
+        terms: &Terms::IN_DOUBT,
     };
 
     pub(crate) fn new(
@@ -84,98 +187,61 @@ impl HalfPlane {
         per_x: Bounded,
         per_y: Bounded,
         closed: bool,
-        grid: Grid,
+        (grid, arena): (Grid, &'f Bump),
     ) -> Self {
-        dispatch!(Level::baseline(), simd => {
+        let [border, ..] = dispatch!(Level::baseline(), simd => {
             let height = [constant, per_x, per_y].map(|term| FourBounded::splat(simd, term));
-            let [half_plane, ..] = HalfPlane::four(simd, height, grid);
-            HalfPlane { closed, ..half_plane }
-        })
+            Border::four(simd, &height, grid)
+        });
+        let terms = arena.alloc(Terms {
+            constant,
+            per_x,
+            per_y,
+            closed,
+        });
+        HalfPlane { border, terms }
     }
 
-    /// Four closed half-planes.
-    #[inline(always)]
-    fn four<S: Simd>(
-        simd: S,
-        [constant, per_x, per_y]: Height<FourBounded<S>>,
-        grid: Grid,
-    ) -> [HalfPlane; 4] {
-        let max = grid.max;
-        // The part of the sum's error that comes from the coefficients.
-        let carried = constant.error() + (per_x.error() + per_y.error()) * max;
-        let magnitude = constant.value().abs() + per_y.value().abs() * max;
-        let magnitude_of_x = per_x.value().abs() * max;
-        // In columns the root is N/2 − (constant + per_y · Y)/(3 · per_x), and moves by the same
-        // part of the sum's error. The inverse of 3 · per_x rounds by 2u, the root's two numbers by
-        // 2u more, the product with Y and the sum with it by u each: less than 8u of the terms'
-        // magnitudes, and of N/2 and the root, which is below 3N where it matters.
-        let inverse = f64x4::splat(simd, 1.0) / (per_x.value() * PIXEL);
-        let at = -(constant.value() * inverse) + grid.half;
-        let root_per_y = -(per_y.value() * inverse);
-        let slack = ((carried + magnitude * (8.0 * U)) * inverse.abs()
-            + 16.0 * U * 3.0 * f64::from(grid.size))
-            * INFLATION;
-        let is_finite = at.abs().simd_lt(f64::INFINITY)
-            & root_per_y.abs().simd_lt(f64::INFINITY)
-            & slack.simd_lt(f64::INFINITY);
-        // The sum rounds by less than 2u of its terms twice.
-        let error = (carried + magnitude * (4.0 * U)) * INFLATION;
-        let is_sloping = (is_finite & !magnitude_of_x.simd_le(error)).to_bitmask();
-        let is_rightward = inverse.simd_gt(0.0).to_bitmask();
-        let level_error = (error + magnitude_of_x) * INFLATION;
-        let terms = [constant.to_array(), per_x.to_array(), per_y.to_array()];
-        let mut half_planes = [HalfPlane::IN_DOUBT; 4];
-        for (i, half_plane) in half_planes.iter_mut().enumerate() {
-            let root = Root {
-                at: at.as_slice()[i],
-                per_y: root_per_y.as_slice()[i],
-                slack: slack.as_slice()[i],
-                rightward: is_rightward >> i & 1 == 1,
-            };
-            let border = if is_sloping >> i & 1 == 1 {
-                Border::Sloping(root)
-            } else {
-                Border::Horizontal {
-                    error: level_error.as_slice()[i],
-                }
-            };
-            *half_plane = HalfPlane {
-                constant: terms[0][i],
-                per_x: terms[1][i],
-                per_y: terms[2][i],
-                closed: true,
-                border,
-            };
-        }
-        half_planes
+    /// Copies in other memory.
+    pub(crate) fn kept_in<'k>(all: &[HalfPlane<'_>], memory: &Member<'k>) -> &'k [HalfPlane<'k>] {
+        let copy = |half_plane: &HalfPlane<'_>| HalfPlane {
+            border: half_plane.border,
+            terms: memory.alloc(*half_plane.terms),
+        };
+        memory.alloc_slice_fill_iter(all.iter().map(copy))
+    }
+
+    /// How many bytes [`HalfPlane::kept_in`] takes.
+    pub(crate) fn kept_size(all: &[HalfPlane<'_>]) -> usize {
+        all.len() * (size_of::<HalfPlane<'_>>() + size_of::<Terms>())
     }
 
     /// The pixels whose points on the plane, or on the screen, lie in a half-space.
     pub(crate) fn of(
         half_space: &HalfSpace<Bounded>,
         plane: Option<&PixelPlane>,
-        grid: Grid,
-    ) -> HalfPlane {
+        (grid, arena): (Grid, &'f Bump),
+    ) -> HalfPlane<'f> {
         let closed = half_space.closed;
         if is_border(half_space, plane) {
             let zero = Bounded::exact(0.0);
-            return HalfPlane::new(zero, zero, zero, closed, grid);
+            return HalfPlane::new(zero, zero, zero, closed, (grid, arena));
         }
         let changes = plane.map(|plane| [plane.per_x, plane.per_y]);
         let origin = origin(plane, grid) - half_space.at;
         let [constant, per_x, per_y] = height(half_space.normal, origin, changes);
-        HalfPlane::new(constant, per_x, per_y, closed, grid)
+        HalfPlane::new(constant, per_x, per_y, closed, (grid, arena))
     }
 
     /// The same for the half-spaces with these walls, four at once: for lines of one direction
     /// and the tetrahedron.
-    pub(crate) fn all_of<'f>(
+    pub(crate) fn all_of(
         (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
         walls: impl Iterator<Item = Wall>,
         plane: Option<&PixelPlane>,
         (grid, level): (Grid, Level),
         arena: &'f Bump,
-    ) -> &'f [HalfPlane] {
+    ) -> &'f [HalfPlane<'f>] {
         let mut all = Growing::new_in(arena);
         let may_be_exact = tetrahedron.may_be_exact();
         let half_space = |wall: Wall| tetrahedron.half_space(wall, direction);
@@ -185,12 +251,13 @@ impl HalfPlane {
             };
             if may_be_exact || four.iter().any(is_special) {
                 let each = four[..count].iter().map(|wall| half_space(*wall));
-                all.extend(each.map(|half_space| HalfPlane::of(&half_space, plane, grid)));
+                all.extend(each.map(|half_space| HalfPlane::of(&half_space, plane, (grid, arena))));
             } else {
                 let lines = (tetrahedron, direction);
-                let four =
-                    dispatch!(level, simd => HalfPlane::four_of(simd, lines, four, plane, grid));
-                all.extend_from_slice_copy(&four[..count]);
+                let walls = (four, count);
+                dispatch!(level, simd => {
+                    HalfPlane::add_four(simd, lines, walls, plane, (grid, arena), &mut all);
+                });
             }
         };
         let mut waiting = None;
@@ -209,16 +276,17 @@ impl HalfPlane {
         all.into_bump_slice()
     }
 
-    /// The same for four walls that do not hold the plane, of a tetrahedron without numbers that
-    /// may be exact.
+    /// Adds those of the first `count` of four walls that do not hold the plane, of a tetrahedron
+    /// without numbers that may be exact.
     #[inline(always)]
-    fn four_of<S: Simd>(
+    fn add_four<S: Simd>(
         simd: S,
         (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
-        walls: &[Wall; 4],
+        (walls, count): (&[Wall; 4], usize),
         plane: Option<&PixelPlane>,
-        grid: Grid,
-    ) -> [HalfPlane; 4] {
+        (grid, arena): (Grid, &'f Bump),
+        all: &mut Growing<'f, HalfPlane<'f>>,
+    ) {
         let [n, at] = tetrahedron.half_spaces_at_once(simd, walls, direction);
         #[allow(
             clippy::manual_map,
@@ -232,18 +300,30 @@ impl HalfPlane {
             None => None,
         };
         let origin = Vector::splat(simd, origin(plane, grid)) - at;
-        let mut half_planes = HalfPlane::four(simd, height(n, origin, changes), grid);
-        for (half_plane, wall) in half_planes.iter_mut().zip(walls) {
-            half_plane.closed = wall.is_closed();
-        }
-        half_planes
+        let height = height(n, origin, changes);
+        let borders = Border::four(simd, &height, grid);
+        let [constant, per_x, per_y] = height.map(FourBounded::to_array);
+        let terms = arena.alloc_slice_fill_with(count, |i| Terms {
+            constant: constant[i],
+            per_x: per_x[i],
+            per_y: per_y[i],
+            closed: walls[i].is_closed(),
+        });
+        let each = borders.into_iter().zip(&*terms);
+        all.extend(each.map(|(border, terms)| HalfPlane { border, terms }));
     }
 
     /// Whether the pixel at X, Y is in the half-plane; `None` where that is in doubt.
     fn decide(&self, x: f64, y: f64) -> Option<bool> {
-        let sum = self.constant + self.per_y * Bounded::exact(y) + self.per_x * Bounded::exact(x);
+        let Terms {
+            constant,
+            per_x,
+            per_y,
+            closed,
+        } = *self.terms;
+        let sum = constant + per_y * Bounded::exact(y) + per_x * Bounded::exact(x);
         let sign = sum.sign().ok()?;
-        Some(sign.is_gt() || (self.closed && sign.is_eq()))
+        Some(sign.is_gt() || (closed && sign.is_eq()))
     }
 
     /// The same, with the sum computed only near the border.
@@ -251,68 +331,80 @@ impl HalfPlane {
         let Some(root) = self.root() else {
             return self.decide(x, y);
         };
-        let beyond = number_at(x, grid.half) - (y * root.per_y + root.at);
-        if beyond.abs() > root.slack * INFLATION + U * (beyond.abs() + f64::from(grid.size)) {
-            Some((beyond > 0.0) == root.rightward)
+        // Bounds that cover roundings to f32 cover those to f64.
+        let column = number_at(x, grid.half);
+        let [low, high] = root.ends.map(|end| y * root.per_y + end);
+        if column < low || high < column {
+            Some((high < column) == root.rightward)
         } else {
             self.decide(x, y)
         }
     }
 
+    /// Whether the border is level, and the row at Y not in the half-plane.
+    pub(crate) fn misses_row(&self, y: f64) -> bool {
+        self.border.is_level() && self.terms.per_x.is_zero() && self.decide(0.0, y) == Some(false)
+    }
+
+    pub(crate) fn border(&self) -> Border {
+        self.border
+    }
+
     /// The border's root, if the border is not level.
-    #[inline]
-    pub(super) fn root(&self) -> Option<&Root> {
-        match &self.border {
-            Border::Sloping(root) => Some(root),
-            Border::Horizontal { .. } => None,
-        }
+    pub(super) fn root(&self) -> Option<Root> {
+        self.border.root()
     }
 
     /// Intersects enclosures of the row at Y with the half-plane.
     #[cfg(test)]
     #[inline(always)]
     pub(super) fn cut_row<S: Simd>(&self, simd: S, y: f64, enclosure: &mut ColumnEnclosure<f64>) {
-        let all = |ends: [f64; 2]| ends.map(|end| S::f64s::splat(simd, end));
+        let all = |ends: [f64; 2]| ends.map(|end| f32x8::splat(simd, end as f32));
         let mut lanes = ColumnEnclosure {
             possible: all(enclosure.possible),
             certain: all(enclosure.certain),
         };
-        self.cut(simd, S::f64s::splat(simd, y), &mut lanes);
-        let first = |ends: [S::f64s; 2]| ends.map(|end| end.as_slice()[0]);
+        self.cut(simd, f32x8::splat(simd, y as f32), &mut lanes);
+        let first = |ends: [f32x8<S>; 2]| ends.map(|end| f64::from(end.as_slice()[0]));
         enclosure.possible = first(lanes.possible);
         enclosure.certain = first(lanes.certain);
     }
 }
 
-impl Cut for HalfPlane {
+impl Cut for Border {
     #[inline(always)]
-    fn cut<S: Simd>(&self, simd: S, y: S::f64s, enclosure: &mut ColumnEnclosure<S::f64s>) {
-        match &self.border {
-            Border::Sloping(root) => root.cut::<S>(y, enclosure),
-            Border::Horizontal { error } => {
-                let ColumnEnclosure { possible, certain } = enclosure;
-                let sum = y * self.per_y.value() + self.constant.value();
-                let is_in = sum.simd_gt(*error);
-                if !is_in.all_true() {
-                    let mut is_in = is_in.to_bitmask();
-                    let mut is_out = sum.simd_lt(-*error).to_bitmask();
-                    if self.per_x.is_zero() {
-                        for (lane, &y) in y.as_slice().iter().enumerate() {
-                            match self.decide(0.0, y) {
-                                Some(true) => is_in |= 1 << lane,
-                                Some(false) => is_out |= 1 << lane,
-                                None => {}
-                            }
-                        }
-                    }
-                    let none = S::f64s::splat(simd, NOWHERE);
-                    let is_in = S::mask64s::from_bitmask(simd, is_in);
-                    let is_out = S::mask64s::from_bitmask(simd, is_out);
-                    possible[1] = is_out.select(none, possible[1]);
-                    certain[1] = is_in.select(certain[1], none);
-                }
-            }
+    fn cut<S: Simd, V>(&self, simd: S, y: V, enclosure: &mut ColumnEnclosure<V>)
+    where
+        V: SimdFloat<S, Element: Position>,
+    {
+        let ColumnEnclosure { possible, certain } = enclosure;
+        let [per_y, low, high, doubt] =
+            [self.per_y, self.low, self.high, self.doubt].map(V::Element::of);
+        let moved = y * per_y;
+        if self.is_level() {
+            let sum = moved + low;
+            let none = V::splat(simd, V::Element::of(NOWHERE));
+            possible[1] = sum.simd_lt(-high).select(none, possible[1]);
+            certain[1] = sum.simd_gt(high).select(certain[1], none);
+            return;
         }
+        // No processor can predict on which side a half-plane lies: each bounds both ends, one of
+        // them at infinity.
+        let (low, high) = (moved + low, moved + high);
+        possible[0] = possible[0].max(low);
+        certain[0] = certain[0].max(low + doubt);
+        possible[1] = possible[1].min(high);
+        certain[1] = certain[1].min(high - doubt);
+    }
+}
+
+impl Cut for HalfPlane<'_> {
+    #[inline(always)]
+    fn cut<S: Simd, V>(&self, simd: S, y: V, enclosure: &mut ColumnEnclosure<V>)
+    where
+        V: SimdFloat<S, Element: Position>,
+    {
+        self.border.cut(simd, y, enclosure);
     }
 }
 

@@ -11,23 +11,21 @@
 //! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
 //! the bound need no test. The columns within it, rarely one, are tested one by one.
 
-use bumpalo::Bump;
 use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, dispatch, f32x8};
 
 use crate::tracer::scanline::edges::band_columns::BandColumns;
-use crate::tracer::scanline::edges::coarse::CoarseHalfPlane;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
-use crate::tracer::scanline::edges::half_plane::HalfPlane;
-use crate::tracer::scanline::grid::{Grid, ROWS, offsets};
+use crate::tracer::scanline::edges::half_plane::{HalfPlane, Root};
+use crate::tracer::scanline::grid::{Grid, Position, ROWS, offsets};
 
 /// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
-    half_planes: &'f [HalfPlane],
+    half_planes: &'f [HalfPlane<'f>],
     /// More half-planes: those of the region that this one is clipped to.
-    clip: &'f [HalfPlane],
+    clip: &'f [HalfPlane<'f>],
     ellipse: Option<&'f Ellipse>,
     /// The half-open range of rows outside of which the region has no pixels that matter.
     rows: (u32, u32),
@@ -35,7 +33,7 @@ pub(crate) struct Region<'f> {
 
 impl<'f> Region<'f> {
     pub(crate) fn new(
-        half_planes: &'f [HalfPlane],
+        half_planes: &'f [HalfPlane<'f>],
         ellipse: Option<&'f Ellipse>,
         grid: Grid,
     ) -> Self {
@@ -49,38 +47,29 @@ impl<'f> Region<'f> {
     }
 
     /// The same region in other memory, clipped to `clip`.
-    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>, clip: &'k [HalfPlane]) -> Region<'k> {
+    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>, clip: &'k [HalfPlane<'k>]) -> Region<'k> {
         Region {
-            half_planes: memory.alloc_slice_copy(self.half_planes),
+            half_planes: HalfPlane::kept_in(self.half_planes, memory),
             clip,
             ellipse: self.ellipse.map(|ellipse| &*memory.alloc(*ellipse)),
             rows: self.rows,
         }
     }
 
-    /// Coarse copies of its half-planes without those that it is clipped to; `None` where there is
-    /// none of one of them, or of the ellipse.
-    pub(crate) fn coarse<'a>(&self, arena: &'a Bump, grid: Grid) -> Option<&'a [CoarseHalfPlane]> {
-        if self.ellipse.is_some() {
-            return None;
-        }
-        let coarse = |half_plane| CoarseHalfPlane::new(half_plane, grid).ok_or(());
-        let all = arena.alloc_slice_try_fill_iter(self.half_planes.iter().map(coarse));
-        all.ok().map(|all| &*all)
-    }
-
     /// How many bytes [`Region::kept_in`] takes.
     pub(crate) fn kept_size(&self) -> usize {
-        size_of_val(self.half_planes) + self.ellipse.map_or(0, size_of_val) + size_of_val(self)
+        HalfPlane::kept_size(self.half_planes)
+            + self.ellipse.map_or(0, size_of_val)
+            + size_of_val(self)
     }
 
     /// The half-planes that the region is an intersection of, besides its ellipse.
-    pub(crate) fn half_planes(&self) -> &'f [HalfPlane] {
+    pub(crate) fn half_planes(&self) -> &'f [HalfPlane<'f>] {
         self.half_planes
     }
 
     /// The intersection with these half-planes, for a region that is not clipped yet.
-    pub(crate) fn clipped(self, clip: &'f [HalfPlane]) -> Self {
+    pub(crate) fn clipped(self, clip: &'f [HalfPlane<'f>]) -> Self {
         Region { clip, ..self }
     }
 
@@ -102,15 +91,15 @@ impl<'f> Region<'f> {
 
     /// Its rows, without those in which a left side certainly lies to the right of a right side.
     pub(crate) fn rows_between_sides(&self, grid: Grid) -> (u32, u32) {
-        let roots = || self.half_planes.iter().chain(self.clip);
-        let roots = || roots().filter_map(HalfPlane::root);
+        let roots = || self.all_half_planes().filter_map(HalfPlane::root);
         let (mut low, mut high) = (-grid.max, grid.max);
         for left in roots().filter(|root| root.rightward) {
             for right in roots().filter(|root| !root.rightward) {
                 // The right root lies at most so far to the right of the left one: `apart` +
-                // `per_y` · Y. The slack of a root is more than rounding its terms again, so it is
-                // taken twice.
-                let apart = right.at - left.at + 2.0 * (left.slack + right.slack);
+                // `per_y` · Y. The bounds on a root are farther apart than rounding its terms again
+                // takes, so that is taken twice.
+                let doubt = |root: &Root| root.ends[1] - root.ends[0];
+                let apart = right.ends[1] - left.ends[0] + doubt(&left) + doubt(&right);
                 let per_y = right.per_y - left.per_y;
                 if per_y > 0.0 {
                     low = low.max(-apart / per_y);
@@ -172,6 +161,9 @@ impl<'f> Region<'f> {
                 continue;
             }
             let y = grid.coordinate(row + i as u32);
+            if self.all_half_planes().any(|each| each.misses_row(y)) {
+                to = from;
+            }
             let is_certain = |column: u32| certain.0 <= column && column < certain.1;
             let holds = |column: u32| match is_certain(column) {
                 true => Some(true),
@@ -216,13 +208,18 @@ impl<'f> Region<'f> {
         }
     }
 
+    /// Its half-planes and those that it is clipped to.
+    fn all_half_planes(&self) -> impl Iterator<Item = &'f HalfPlane<'f>> {
+        self.half_planes.iter().chain(self.clip)
+    }
+
     /// Whether the pixel at X, Y is in the region; `None` where that is in doubt.
     fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
         let mut all = match &self.ellipse {
             Some(ellipse) => ellipse.decide(x, y, grid),
             None => Some(true),
         };
-        for half_plane in self.half_planes.iter().chain(self.clip) {
+        for half_plane in self.all_half_planes() {
             match half_plane.decide_near(x, y, grid) {
                 Some(false) => return Some(false),
                 Some(true) => {}
@@ -239,47 +236,73 @@ impl<'f> Region<'f> {
 pub(crate) fn enclose<S: Simd>(
     simd: S,
     ellipse: Option<&Ellipse>,
-    (half_planes, clip): (&[impl Cut], &[HalfPlane]),
+    (half_planes, clip): (&[impl Cut], &[HalfPlane<'_>]),
     (rows, row): ((u32, u32), u32),
     grid: Grid,
     band: &mut BandColumns,
 ) {
     band.begin();
-    for first in (0..ROWS).step_by(S::f64s::LEN) {
-        let y = offsets::<S>(simd, first) + grid.coordinate(row);
-        let mut enclosure = match ellipse {
-            Some(ellipse) => ellipse.enclose(simd, y, grid),
-            None => {
-                let zero = S::f64s::splat(simd, 0.0);
-                let all = [zero, zero + f64::from(grid.size)];
-                ColumnEnclosure {
-                    possible: all,
-                    certain: all,
-                }
-            }
+    let Some(ellipse) = ellipse else {
+        let y = offsets::<S, f32x8<S>>(simd, 0) + grid.coordinate(row) as f32;
+        let zero = f32x8::splat(simd, 0.0);
+        let all = [zero, zero + grid.size as f32];
+        let mut enclosure = ColumnEnclosure {
+            possible: all,
+            certain: all,
         };
-        for half_plane in half_planes {
-            half_plane.cut(simd, y, &mut enclosure);
-        }
-        for half_plane in clip {
-            half_plane.cut(simd, y, &mut enclosure);
-        }
-        let is_crossed = y.simd_ge(grid.coordinate(rows.0)) & y.simd_lt(grid.coordinate(rows.1));
-        let ColumnEnclosure { possible, certain } = enclosure;
-        let possible = [
-            grid.ceil_all::<S>(possible[0]),
-            grid.count_all::<S>(possible[1]),
-        ];
-        let certain = [
-            grid.ceil_all::<S>(certain[0]),
-            grid.count_all::<S>(certain[1]),
-        ];
-        band.store(simd, first, is_crossed, possible, certain);
+        cut(simd, (half_planes, clip), y, &mut enclosure);
+        store(simd, (rows, grid), (y, 0), enclosure, band);
+        return;
+    };
+    // The chords of ellipses take f64.
+    for first in (0..ROWS).step_by(S::f64s::LEN) {
+        let y = offsets::<S, S::f64s>(simd, first) + grid.coordinate(row);
+        let mut enclosure = ellipse.enclose(simd, y, grid);
+        cut(simd, (half_planes, clip), y, &mut enclosure);
+        store(simd, (rows, grid), (y, first), enclosure, band);
     }
+}
+
+/// Intersects enclosures with half-planes.
+#[inline(always)]
+fn cut<S: Simd, V>(
+    simd: S,
+    (half_planes, clip): (&[impl Cut], &[HalfPlane<'_>]),
+    y: V,
+    enclosure: &mut ColumnEnclosure<V>,
+) where
+    V: SimdFloat<S, Element: Position>,
+{
+    for half_plane in half_planes {
+        half_plane.cut(simd, y, enclosure);
+    }
+    for half_plane in clip {
+        half_plane.cut(simd, y, enclosure);
+    }
+}
+
+/// Rounds enclosures of the rows at these Y, from row `first` of the band on, to columns.
+#[inline(always)]
+fn store<S: Simd, V>(
+    simd: S,
+    (rows, grid): ((u32, u32), Grid),
+    (y, first): (V, usize),
+    ColumnEnclosure { possible, certain }: ColumnEnclosure<V>,
+    band: &mut BandColumns,
+) where
+    V: SimdFloat<S, Element: Position>,
+{
+    // f32 holds Y of every row.
+    let [from, to] = [rows.0, rows.1].map(|row| V::Element::of(grid.coordinate(row) as f32));
+    let is_crossed = y.simd_ge(from) & y.simd_lt(to);
+    let possible = [grid.ceil_all(possible[0]), grid.count_all(possible[1])];
+    let certain = [grid.ceil_all(certain[0]), grid.count_all(certain[1])];
+    band.store(simd, first, is_crossed, possible, certain);
 }
 
 #[cfg(test)]
 mod tests {
+    use bumpalo::Bump;
     use fearless_simd::{Level, dispatch};
 
     use super::*;
@@ -328,10 +351,12 @@ mod tests {
                 let center = [number(90), number(90), number(90)];
                 (center, number(60).abs() + 1)
             });
-            let half_planes: Vec<HalfPlane> = lines
+            let arena = Bump::new();
+            let half_planes: Vec<HalfPlane<'_>> = lines
                 .iter()
                 .map(|&(constant, column, row, closed)| {
-                    HalfPlane::new(exact(constant), exact(column), exact(row), closed, grid)
+                    let [constant, column, row] = [constant, column, row].map(exact);
+                    HalfPlane::new(constant, column, row, closed, (grid, &arena))
                 })
                 .collect();
             let ellipse = sphere.map(|([x, y, z], radius)| {
@@ -340,22 +365,13 @@ mod tests {
                 SphereOutlines::new(grid).of(Vector::new(x, y, z), radius)
             });
             let region = Region::new(&half_planes, ellipse.as_ref(), grid);
-            let arena = Bump::new();
-            let coarse = region.coarse(&arena, grid);
             for first in (0..SIZE).step_by(ROWS) {
                 let level = Level::baseline();
                 let mut enclosed = BandColumns::NONE;
                 dispatch!(level, simd => region.enclose(simd, first, grid, &mut enclosed));
-                let coarse = coarse.map(|all| {
-                    let (all, rows) = ((all, [].as_slice()), ((0, SIZE), first));
-                    let mut band = BandColumns::NONE;
-                    dispatch!(level, simd => enclose(simd, None, all, rows, grid, &mut band));
-                    band
-                });
                 let mut narrowed = enclosed.clone();
                 region.narrow(&mut narrowed, first, grid);
-                for band in [Some(enclosed), Some(narrowed), coarse] {
-                    let Some(band) = band else { continue };
+                for band in [enclosed, narrowed] {
                     for row in 0..ROWS {
                         let within = |ends: &[[u32; ROWS]; 2], column: u32| {
                             ends[0][row] <= column && column < ends[1][row]

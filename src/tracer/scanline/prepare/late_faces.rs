@@ -5,9 +5,9 @@
 //! creases and shadows of a solid are no edges of the frame: they are made for the rows that show
 //! the solid, and divide what they show of it.
 //!
-//! A crowd can have millions of such shadows. So most are kept coarsely, and made again in the few
-//! bands in which that leaves a doubt; and where the memory for that is used up, they are made
-//! again in each band that they reach.
+//! A crowd can have millions of such shadows. So of most, only the borders of their half-planes are
+//! kept, and they are made again in the few bands in which that leaves a doubt; and where the memory
+//! for that is used up, they are made again in each band that they reach.
 
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicUsize;
@@ -18,8 +18,7 @@ use fearless_simd::{Level, Simd};
 use crate::number::Bounded;
 use crate::tracer::ladder::RowPixels;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
-use crate::tracer::scanline::edges::coarse::CoarseHalfPlane;
-use crate::tracer::scanline::edges::half_plane::HalfPlane;
+use crate::tracer::scanline::edges::half_plane::{Border, HalfPlane};
 use crate::tracer::scanline::edges::region::{Region, enclose};
 use crate::tracer::scanline::edges::table::RegionKinds;
 use crate::tracer::scanline::grid::Grid;
@@ -59,8 +58,8 @@ pub(super) enum KeptRegion<'f> {
     Whole(&'f Region<'f>),
     /// The shadow of a tetrahedron, clipped to the outline of the solid.
     Shadow {
-        /// If there was memory for them.
-        half_planes: Option<&'f [CoarseHalfPlane]>,
+        /// Their borders, if there was memory for them.
+        half_planes: Option<&'f [Border]>,
         cast: Cast,
         /// The rows in which the shadow may have pixels.
         rows: (u16, u16),
@@ -112,7 +111,7 @@ impl<'f> LateFaces<'f> {
 pub(super) struct KeptRegions<'a, 'f> {
     pub(super) all: &'a [KeptRegion<'f>],
     /// The half-planes of the solid's outline, and its rows.
-    pub(super) outline: (&'f [HalfPlane], (u32, u32)),
+    pub(super) outline: (&'f [HalfPlane<'f>], (u32, u32)),
     /// Finds the columns of a shadow in the band, made again.
     pub(super) again: &'a dyn Fn(Cast, &mut BandColumns),
 }

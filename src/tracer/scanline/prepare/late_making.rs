@@ -59,7 +59,7 @@ impl<'f> LateFaces<'f> {
                     receivers: regions.kinds.receivers,
                 },
                 paints: paints.kept_in(&memory),
-                regions: is_kept.then(|| self.keep((&regions, has_memory), source, spare, &memory)),
+                regions: is_kept.then(|| self.keep((&regions, has_memory), source, &memory)),
             }
         })
     }
@@ -85,7 +85,6 @@ impl<'f> LateFaces<'f> {
         &self,
         (regions, has_memory): (&Regions<'_>, bool),
         source: &LateSource<'f>,
-        spare: &Bump,
         memory: &Member<'f>,
     ) -> &'f [KeptRegion<'f>] {
         let picture = source.pixels.bounded();
@@ -105,23 +104,22 @@ impl<'f> LateFaces<'f> {
         let taken = Cell::new(0);
         let take = |bytes: usize| taken.set(taken.get() + bytes);
         let shadow = |region: &Region<'_>, cast| {
-            let half_planes = if has_memory {
-                let coarse = region.coarse(spare, source.grid)?;
-                take(size_of_val(coarse));
-                Some(&*memory.alloc_slice_copy(coarse))
-            } else {
-                None
-            };
+            let half_planes = has_memory.then(|| {
+                let borders = region.half_planes().iter().map(HalfPlane::border);
+                let borders = &*memory.alloc_slice_fill_iter(borders);
+                take(size_of_val(borders));
+                borders
+            });
             let (from, to) = if is_high {
                 region.rows_between_sides(source.grid)
             } else {
                 region.rows()
             };
-            Some(KeptRegion::Shadow {
+            KeptRegion::Shadow {
                 half_planes,
                 cast,
                 rows: (from as u16, to as u16),
-            })
+            }
         };
         let regions = regions.all.iter().zip(regions.kinds.all);
         let regions = regions.map(|(region, kind)| {
@@ -135,7 +133,7 @@ impl<'f> LateFaces<'f> {
                 }
                 _ => None,
             };
-            let shadow = cast.and_then(|cast| shadow(region, cast));
+            let shadow = cast.map(|cast| shadow(region, cast));
             shadow.unwrap_or_else(|| {
                 take(region.kept_size());
                 KeptRegion::Whole(memory.alloc(region.kept_in(memory, self.outlined.outline)))

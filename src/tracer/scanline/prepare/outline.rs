@@ -53,7 +53,7 @@ pub(crate) struct OutlinedFaces<'f> {
     /// The number of the solid in the scene.
     pub(crate) number: usize,
     /// The half-planes of the outline, and its rows.
-    pub(crate) outline: &'f [HalfPlane],
+    pub(crate) outline: &'f [HalfPlane<'f>],
     pub(crate) rows: (u32, u32),
 }
 

@@ -92,7 +92,8 @@ impl<'p> SurfaceShadow<'p> {
         arena: &'f Bump,
     ) -> Option<Region<'f>> {
         let planes = self.on(solid)?;
-        let planes = planes.map(|half_space| HalfPlane::of(&half_space, Some(plane), grid));
+        let planes =
+            planes.map(|half_space| HalfPlane::of(&half_space, Some(plane), (grid, arena)));
         let in_doubt = self.rise.is_eq().then_some(HalfPlane::IN_DOUBT);
         Some(Region::new(
             collect(arena, planes.chain(in_doubt)),
@@ -123,7 +124,7 @@ pub(crate) fn shadows_on<'f>(
                 let before = (!is_ahead).then(|| sphere.before(&to_light));
                 let before = before
                     .iter()
-                    .map(|half_space| HalfPlane::of(half_space, Some(plane), grid));
+                    .map(|half_space| HalfPlane::of(half_space, Some(plane), (grid, arena)));
                 let ellipse = arena.alloc_with(|| lines.meet(sphere));
                 Region::new(collect(arena, before), Some(ellipse), grid)
             }

@@ -52,9 +52,10 @@ impl<'f> PreparedSurface<'f> {
         let is_ahead = |caster: usize| rises && scene.facts().sides[caster] == Side::Above;
         let depth = SurfaceDepth::new(&surface.square, grid);
         let rows = surface.extent.rows;
+        let screen = (grid, parts.arena);
         let sides = parts
             .arena
-            .alloc(sides_on_screen(&surface.square, &plane, grid));
+            .alloc(sides_on_screen(&surface.square, &plane, screen));
         let outline = Region::new(sides, None, grid).within(rows);
         let view = &picture.view;
         let casters = scene.facts().surface_casters.as_ref();

@@ -3,6 +3,8 @@
 //! They follow from `ViewTransform::on_surface`: an eye ray meets the plane at t = Y/3 − (N/2) ·
 //! height, where x is X and z is 3N/2 − 10 t.
 
+use bumpalo::Bump;
+
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Real};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
@@ -26,11 +28,11 @@ pub(crate) fn surface_plane(square: &Surface<Bounded>, grid: Grid) -> PixelPlane
 }
 
 /// The half-planes whose intersection is the square on the screen. `plane` is the surface's.
-pub(crate) fn sides_on_screen(
+pub(crate) fn sides_on_screen<'f>(
     square: &Surface<Bounded>,
     plane: &PixelPlane,
-    grid: Grid,
-) -> [HalfPlane; 4] {
+    screen: (Grid, &'f Bump),
+) -> [HalfPlane<'f>; 4] {
     // Scaled by 3, no coefficient is a third, which would round: at α = 0 a side of the square may
     // pass through all pixels of a row exactly.
     let [zero, three, ten] = [0.0, EYE_Y, EYE_Z].map(Bounded::exact);
@@ -40,7 +42,7 @@ pub(crate) fn sides_on_screen(
         Vector::new(zero, zero, -ten),
     ];
     let sides = square.sides(scaled, square.half_width * three);
-    sides.map(|[constant, per_x, per_y]| HalfPlane::new(constant, per_x, per_y, true, grid))
+    sides.map(|[constant, per_x, per_y]| HalfPlane::new(constant, per_x, per_y, true, screen))
 }
 
 /// The parameter at which eye rays meet the plane: constant + per_y · Y.
