@@ -79,6 +79,7 @@
 mod active;
 mod edges;
 mod faces;
+mod fetch;
 mod grid;
 mod low;
 mod prepare;
@@ -314,11 +315,14 @@ impl<'f> RowTracer<'f> {
     fn show<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
-        spans: impl ExactSizeIterator<Item = (u32, Visible)>,
+        spans: impl ExactSizeIterator<Item = (u32, Visible)> + Clone,
         (depth_tester, depth_tests): (&mut DepthTester, &DepthTests),
         painters: &mut Painters,
     ) {
         writer.tally.spans += spans.len() as u64;
+        if self.frame.late_faces > 0 {
+            self.fetch_late_faces(spans.clone());
+        }
         let mut from = 0;
         for (to, visible) in spans {
             let columns = (from, to);
@@ -333,6 +337,17 @@ impl<'f> RowTracer<'f> {
                         self.write(writer, columns, shows, painters);
                     }
                 }
+            }
+        }
+    }
+
+    /// Asks for the memory of the late faces that spans show.
+    fn fetch_late_faces(&self, spans: impl Iterator<Item = (u32, Visible)>) {
+        for (_, visible) in spans {
+            if let Visible::Only(Shown::Faces { mirrored, solid }) = visible
+                && let Appearance::LateFaces(late) = self.frame.solids(mirrored).appearance(solid)
+            {
+                late.fetch();
             }
         }
     }

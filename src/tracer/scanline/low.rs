@@ -103,7 +103,7 @@ impl LowEdges {
     }
 
     /// The spans of the overlaid row: the column at which each ends, and what it shows.
-    pub(crate) fn spans(&self) -> impl ExactSizeIterator<Item = (u32, Visible)> {
+    pub(crate) fn spans(&self) -> impl ExactSizeIterator<Item = (u32, Visible)> + Clone {
         let spans = self.spans.iter();
         spans.map(|(to, visible)| (*to, visible.visible()))
     }

@@ -46,12 +46,20 @@ const _: () = assert!(MAX_SIZE < EdgeAt::BEYOND);
 
 /// Regions that bands can cross.
 pub(crate) trait BandRegions {
+    /// Asks for the memory that crossing the region of this number takes.
+    fn fetch(&self, number: usize);
+
     /// Finds the columns of the region of this number in the band of rows from the given one on.
     /// `band` may hold anything before.
     fn cross<S: Simd>(&self, simd: S, number: usize, first: (u32, Grid), band: &mut BandColumns);
 }
 
 impl BandRegions for Regions<'_> {
+    #[inline(always)]
+    fn fetch(&self, number: usize) {
+        self.all[number].fetch();
+    }
+
     #[inline(always)]
     fn cross<S: Simd>(
         &self,
@@ -76,7 +84,7 @@ pub(crate) struct RowEdges {
 }
 
 /// So many regions are crossed before the edges of the first are written: no crossing then waits
-/// for what is unpredictable about the edges of another, and the memory of several is read at once.
+/// for what is unpredictable about the edges of another, and the memory of all is asked for at once.
 const AT_ONCE: usize = 16;
 
 /// Which edges were added together.
@@ -137,6 +145,9 @@ impl RowEdges {
         let mut ends = [begin; ROWS];
         let mut most = begin;
         for numbers in numbers.chunks(AT_ONCE) {
+            for &number in numbers {
+                regions.fetch(number as usize);
+            }
             for (band, &number) in self.bands.iter_mut().zip(numbers) {
                 regions.cross(simd, number as usize, (first, grid), band);
             }
@@ -244,6 +255,8 @@ mod tests {
     struct RandomRegions(Vec<BandColumns>);
 
     impl BandRegions for RandomRegions {
+        fn fetch(&self, _: usize) {}
+
         fn cross<S: Simd>(&self, _: S, number: usize, _: (u32, Grid), band: &mut BandColumns) {
             *band = self.0[number].clone();
         }

@@ -346,8 +346,8 @@ impl<'f> HalfPlane<'f> {
         self.border.is_level() && self.terms.per_x.is_zero() && self.decide(0.0, y) == Some(false)
     }
 
-    pub(crate) fn border(&self) -> Border {
-        self.border
+    pub(crate) fn border(&self) -> &Border {
+        &self.border
     }
 
     /// The border's root, if the border is not level.

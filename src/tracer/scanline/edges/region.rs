@@ -19,6 +19,7 @@ use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
 use crate::tracer::scanline::edges::half_plane::{HalfPlane, Root};
+use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::grid::{Grid, Position, ROWS, offsets};
 
 /// The intersection of half-planes and of an ellipse, if there is one.
@@ -119,6 +120,18 @@ impl<'f> Region<'f> {
 
     pub(crate) fn ellipse(&self) -> Option<&'f Ellipse> {
         self.ellipse
+    }
+
+    /// Asks for the memory that crossing it takes, but for what it is clipped to.
+    #[inline(always)]
+    pub(crate) fn fetch(&self) {
+        if let [first, .., last] | [first @ last] = self.half_planes {
+            fetch(first.border());
+            fetch(last.border());
+        }
+        if let Some(ellipse) = self.ellipse {
+            fetch(ellipse);
+        }
     }
 
     /// Finds the region's columns in the band of rows from `row` on. They are written where the

@@ -21,6 +21,7 @@ use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::half_plane::{Border, HalfPlane};
 use crate::tracer::scanline::edges::region::{Region, enclose};
 use crate::tracer::scanline::edges::table::RegionKinds;
+use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
@@ -105,6 +106,13 @@ impl<'f> LateFaces<'f> {
             made: OnceLock::new(),
         }
     }
+
+    /// Asks for the memory that getting them takes.
+    #[inline(always)]
+    pub(crate) fn fetch(&self) {
+        fetch(&self.number);
+        fetch(&self.made.get().is_some());
+    }
 }
 
 /// The kept regions of late faces, to be crossed.
@@ -117,6 +125,17 @@ pub(super) struct KeptRegions<'a, 'f> {
 }
 
 impl BandRegions for KeptRegions<'_, '_> {
+    #[inline(always)]
+    fn fetch(&self, number: usize) {
+        if let KeptRegion::Shadow {
+            half_planes: Some([first, ..]),
+            ..
+        } = &self.all[number]
+        {
+            fetch(first);
+        }
+    }
+
     #[inline(always)]
     fn cross<S: Simd>(
         &self,

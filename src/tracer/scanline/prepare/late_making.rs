@@ -105,7 +105,10 @@ impl<'f> LateFaces<'f> {
         let take = |bytes: usize| taken.set(taken.get() + bytes);
         let shadow = |region: &Region<'_>, cast| {
             let half_planes = has_memory.then(|| {
-                let borders = region.half_planes().iter().map(HalfPlane::border);
+                let borders = region
+                    .half_planes()
+                    .iter()
+                    .map(|half_plane| *half_plane.border());
                 let borders = &*memory.alloc_slice_fill_iter(borders);
                 take(size_of_val(borders));
                 borders
