@@ -289,8 +289,11 @@ impl<'f> RowTracer<'f> {
         let resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
         active.enter(writer.row, table, self.level, frame.grid, resolve);
         writer.tally.edges += active.edge_count() as u64;
-        if table.has_low() && low.enter(writer.row, table, self.level, frame.grid) {
-            return self.trace_overlaid(writer, scratch);
+        if table.has_low() {
+            let fetch = |regions: &[u32]| frame.fetch(regions);
+            if low.enter(writer.row, table, self.level, frame.grid, fetch) {
+                return self.trace_overlaid(writer, scratch);
+            }
         }
         let depths = (depth_tester, &*depth_tests);
         self.show(writer, active.spans(writer.row), depths, painters);
@@ -315,14 +318,11 @@ impl<'f> RowTracer<'f> {
     fn show<'r>(
         &'r self,
         writer: &mut RowWriter<'r>,
-        spans: impl ExactSizeIterator<Item = (u32, Visible)> + Clone,
+        spans: impl ExactSizeIterator<Item = (u32, Visible)>,
         (depth_tester, depth_tests): (&mut DepthTester, &DepthTests),
         painters: &mut Painters,
     ) {
         writer.tally.spans += spans.len() as u64;
-        if self.frame.late_faces > 0 {
-            self.fetch_late_faces(spans.clone());
-        }
         let mut from = 0;
         for (to, visible) in spans {
             let columns = (from, to);
@@ -337,17 +337,6 @@ impl<'f> RowTracer<'f> {
                         self.write(writer, columns, shows, painters);
                     }
                 }
-            }
-        }
-    }
-
-    /// Asks for the memory of the late faces that spans show.
-    fn fetch_late_faces(&self, spans: impl Iterator<Item = (u32, Visible)>) {
-        for (_, visible) in spans {
-            if let Visible::Only(Shown::Faces { mirrored, solid }) = visible
-                && let Appearance::LateFaces(late) = self.frame.solids(mirrored).appearance(solid)
-            {
-                late.fetch();
             }
         }
     }

@@ -185,7 +185,7 @@ impl ActiveEdges {
     }
 
     /// The spans of the row, from the left: the column at which each ends, and what it shows.
-    pub(crate) fn spans(&self, row: u32) -> impl ExactSizeIterator<Item = (u32, Visible)> + Clone {
+    pub(crate) fn spans(&self, row: u32) -> impl ExactSizeIterator<Item = (u32, Visible)> {
         let column = move |edge: u32| self.sorted_columns[edge as usize][row as usize % ROWS];
         let spans = self.spans[1..].iter();
         spans.map(move |span| (column(span.to), span.visible.visible()))

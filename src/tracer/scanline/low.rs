@@ -35,18 +35,21 @@ impl LowEdges {
         self.coverage.clear(&table.regions.kinds);
     }
 
-    /// Goes to a row. Returns whether any low region reaches it.
+    /// Goes to a row. Returns whether any low region reaches it. `fetch` asks for the memory of what
+    /// regions show.
     pub(crate) fn enter(
         &mut self,
         row: u32,
         table: &EdgeTable<'_>,
         level: Level,
         grid: Grid,
+        fetch: impl Fn(&[u32]),
     ) -> bool {
         let first = row - row % ROWS as u32;
         if self.first != Some(first) {
             self.first = Some(first);
             let low = table.low(first);
+            fetch(low);
             self.edges.clear();
             self.added = self.edges.add(&table.regions, low, first, level, grid);
         }
@@ -103,7 +106,7 @@ impl LowEdges {
     }
 
     /// The spans of the overlaid row: the column at which each ends, and what it shows.
-    pub(crate) fn spans(&self) -> impl ExactSizeIterator<Item = (u32, Visible)> + Clone {
+    pub(crate) fn spans(&self) -> impl ExactSizeIterator<Item = (u32, Visible)> {
         let spans = self.spans.iter();
         spans.map(|(to, visible)| (*to, visible.visible()))
     }

@@ -184,7 +184,7 @@ fn spans(tracer: &RowTracer<'_>, row: u32, scratch: &mut Scratch) -> Vec<(u32, V
     let (table, grid) = (&frame.edge_table, frame.grid);
     let mut resolve = |coverage: &Coverage| visible(frame, coverage, depth_tests);
     active.enter(row, table, level, grid, &mut resolve);
-    low.enter(row, table, level, grid);
+    low.enter(row, table, level, grid, |_| {});
     low.overlay(row, table, active, resolve);
     low.spans().collect()
 }

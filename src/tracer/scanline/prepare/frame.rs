@@ -7,13 +7,13 @@ use crate::number::Bounded;
 use crate::stage::Stage;
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::table::EdgeTable;
+use crate::tracer::scanline::edges::table::{EdgeTable, RegionKind};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::appearance::prepare_solids;
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::outline::Outlines;
-use crate::tracer::scanline::prepare::solids::PreparedSolids;
+use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::prepare::surface::PreparedSurface;
 use crate::tracer::scanline::write::paint::{AllPaints, PaintNumber};
 
@@ -87,6 +87,26 @@ impl<'f> PreparedFrame<'f> {
             shaded_spheres: parts.shaded_spheres,
             late_faces: parts.late_faces,
             quadrants,
+        }
+    }
+
+    /// Asks for the memory of the solids of some regions.
+    pub(crate) fn fetch(&self, regions: &[u32]) {
+        let kinds = self.edge_table.regions.kinds.all;
+        let solids = regions
+            .iter()
+            .filter_map(|&number| match kinds[number as usize] {
+                RegionKind::Direct(solid) => Some((self.solids(false), solid)),
+                RegionKind::Mirrored(solid) => Some((self.solids(true), solid)),
+                _ => None,
+            });
+        for (solids, solid) in solids.clone() {
+            solids.fetch(solid);
+        }
+        for (solids, solid) in solids {
+            if let Appearance::LateFaces(late) = solids.appearance(solid) {
+                late.fetch();
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::scene::Side;
 use crate::tracer::scanline::edges::table::SolidIndex;
+use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::prepare::depth::Depth;
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::late_faces::LateFaces;
@@ -36,6 +37,12 @@ impl<'f> PreparedSolids<'f> {
 
     pub(crate) fn appearance(&self, SolidIndex(index): SolidIndex) -> &Appearance<'f> {
         &self.appearance[index as usize]
+    }
+
+    /// Asks for the memory of what tells what is seen of a solid.
+    pub(crate) fn fetch(&self, SolidIndex(index): SolidIndex) {
+        fetch(&std::mem::discriminant(&self.appearance[index as usize]));
+        self.separation.fetch(index as usize);
     }
 
     pub(crate) fn depth(&self, SolidIndex(index): SolidIndex) -> &Depth<'f> {

@@ -12,6 +12,7 @@ use crate::scene::Solid;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Entry;
 use crate::tracer::scanline::edges::table::SolidIndex;
+use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 use crate::tracer::view_space::eye_direction;
@@ -50,6 +51,11 @@ impl<'f> Separation<'f> {
             count,
             in_front,
         }
+    }
+
+    /// Asks for the memory of a solid's entry.
+    pub(crate) fn fetch(&self, solid: usize) {
+        fetch(&self.entries[solid].nearest);
     }
 
     /// The solid of `met` that is certainly in front of all others, if there is one.
