@@ -433,3 +433,44 @@ fn height<R: Ring>(n: Vector<R>, origin: Vector<R>, changes: Option<[Vector<R>; 
         None => [constant, n.x, n.y],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn rows_near_a_level_border_stay_in_doubt() {
+        let mut random = Random::new();
+        let (grid, arena) = (Grid::new(500), Bump::new());
+        let (mut decided, mut doubtful) = (0, 0);
+        for _ in 0..2000 {
+            let y = grid.coordinate(random.below(500) as u32);
+            let per_y = 2.0 * random.fraction() - 1.0;
+            // The row lies about as far from the border as f32 can tell.
+            let away = 32.0 * V * (2.0 * random.fraction() - 1.0);
+            let constant = -per_y * y * (1.0 + away);
+            let [constant, per_x, per_y] = [constant, 0.0, per_y].map(Bounded::exact);
+            let half_plane = HalfPlane::new(constant, per_x, per_y, true, (grid, &arena));
+            let mut enclosure = ColumnEnclosure {
+                possible: [0.0, 500.0],
+                certain: [0.0, 500.0],
+            };
+            let level = Level::baseline();
+            dispatch!(level, simd => half_plane.cut_row(simd, y, &mut enclosure));
+            let is_in = match (enclosure.certain[1] > 0.0, enclosure.possible[1] > 0.0) {
+                (true, _) => Some(true),
+                (_, false) => Some(false),
+                _ => None,
+            };
+            match is_in {
+                None => doubtful += 1,
+                Some(_) => {
+                    assert_eq!(half_plane.decide(0.0, y), is_in, "Y = {y}");
+                    decided += 1;
+                }
+            }
+        }
+        assert!(decided > 500 && doubtful > 100, "{decided}, {doubtful}");
+    }
+}
