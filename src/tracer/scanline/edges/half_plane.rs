@@ -47,8 +47,8 @@ pub(crate) struct Border {
     low: f32,
     /// Or for a level border, a bound on the error of that sum as a stand-in for the whole one.
     high: f32,
-    /// How far one bound on the root can be from another on its other side; [`LEVEL`] for a border
-    /// that is level, or of which f64 does not tell that it is not.
+    /// How far one bound on the root can be from another on its other side; [`LEVEL`], which is
+    /// negative, for a border that is level, or of which f64 does not tell that it is not.
     doubt: f32,
 }
 
@@ -129,7 +129,7 @@ impl Border {
 
     /// Whether f64 does not tell that the border slopes.
     fn is_level(&self) -> bool {
-        self.doubt == LEVEL
+        self.doubt < 0.0
     }
 
     /// Whether a row can enter the half-plane at the root, and not leave it there.
