@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::bounding_ball::{BoundingBall, MARGIN, Projections, bounding_balls};
 use super::{EDGES, FACES, Solid, Sphere, Tetrahedron};
@@ -34,10 +35,13 @@ pub(crate) struct Casters {
 #[derive(Clone, Debug)]
 struct OnFaces {
     /// Those of face 0, then those of face 1, and so on.
-    all: Box<[u16]>,
+    all: SmallVec<[u16; FEW_CASTERS]>,
     /// Where those of each face end.
     ends: [u32; 4],
 }
+
+/// Most tetrahedra of a crowd have no more casters: those are read without a look elsewhere.
+const FEW_CASTERS: usize = 8;
 
 impl OnFaces {
     fn of(&self, face: usize) -> &[u16] {
@@ -113,7 +117,7 @@ impl Casters {
     fn find_on_faces(&self, tetrahedron: usize) -> OnFaces {
         let prisms = &self.prisms[tetrahedron - self.on_spheres.len()];
         let near = self.near(tetrahedron);
-        let mut all = Vec::new();
+        let mut all = SmallVec::new();
         let ends = [0, 1, 2, 3].map(|face| {
             if let Some(light) = &prisms.light[face] {
                 let vertices = vertices_of(face, &prisms.vertices);
@@ -123,10 +127,7 @@ impl Casters {
             }
             all.len() as u32
         });
-        OnFaces {
-            all: all.into_boxed_slice(),
-            ends,
-        }
+        OnFaces { all, ends }
     }
 
     /// The solids whose balls may stand between a point of the receiver's ball and the light.
