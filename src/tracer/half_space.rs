@@ -34,10 +34,10 @@ impl<R: Real> HalfSpace<R> {
 
 impl HalfSpace<Bounded> {
     /// Whether all of these points certainly lie outside, and not on the border.
-    pub(super) fn misses(&self, points: [Vector<Bounded>; 4], level: Level) -> bool {
+    pub(super) fn misses(&self, points: &[Vector<Bounded>; 4], level: Level) -> bool {
         dispatch!(level, simd => {
             let [normal, at] = [Vector::splat(simd, self.normal), Vector::splat(simd, self.at)];
-            normal.dot(Vector::together(simd, points) - at).all_negative()
+            normal.dot(Vector::together(simd, *points) - at).all_negative()
         })
     }
 }

@@ -174,8 +174,8 @@ impl<R: Real> Tetrahedron<R> {
         }
     }
 
-    pub(super) fn vertices(&self) -> [Vector<R>; 4] {
-        self.vertices
+    pub(super) fn vertices(&self) -> &[Vector<R>; 4] {
+        &self.vertices
     }
 
     /// The closed half-space of a face that holds the solid.

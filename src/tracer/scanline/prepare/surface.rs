@@ -72,7 +72,7 @@ impl<'f> PreparedSurface<'f> {
         let lines = LazyCell::new(|| ParallelLines::new(&plane, view.shading.to_light, grid));
         let rows_of = |caster: u16| match view.solid(usize::from(caster)) {
             Solid::Sphere(_) => rows,
-            Solid::Tetrahedron(t) => lines.rows_through(t.solid.vertices()),
+            Solid::Tetrahedron(t) => lines.rows_through(*t.solid.vertices()),
         };
         let cast = casters
             .zip(cast)
