@@ -93,7 +93,6 @@ mod write;
 use std::ops::Range;
 use std::sync::atomic::AtomicUsize;
 
-use bumpalo::Bump;
 use fearless_simd::Level;
 
 use super::arena::Arena;
@@ -108,7 +107,8 @@ use grid::Columns;
 pub(super) use grid::ROWS;
 use low::LowEdges;
 use prepare::frame::{Crowd, PreparedFrame};
-use prepare::late_faces::{LateFaces, LateSource};
+use prepare::late_faces::LateFaces;
+use prepare::late_source::{LateMaker, LateSource, LateWork};
 use prepare::solids::Appearance;
 pub(super) use shade::policy::Precision;
 use shade::span::SpanShader;
@@ -156,8 +156,7 @@ pub(super) struct Scratch {
 struct Painters {
     shader: SpanShader,
     face_splitter: FaceSplitter,
-    /// Memory that is free between late faces.
-    spare: Bump,
+    late_work: LateWork,
 }
 
 impl<'f> RowTracer<'f> {
@@ -239,6 +238,7 @@ impl<'f> RowTracer<'f> {
             tally: Tally::default(),
             progress,
         };
+        let late = LateMaker::new(&self.late);
         let mut traced = 0;
         for number in rows {
             if progress.is_cancelled() {
@@ -248,7 +248,7 @@ impl<'f> RowTracer<'f> {
             writer.y = self.frame.grid.coordinate(number);
             match &self.frame.quadrants {
                 Some(quadrants) => self.trace_quadrants(&mut writer, quadrants),
-                None => self.trace_row(&mut writer, scratch),
+                None => self.trace_row(&mut writer, scratch, &late),
             }
             writer.finish();
             traced += 1;
@@ -273,7 +273,12 @@ impl<'f> RowTracer<'f> {
         }
     }
 
-    fn trace_row<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
+    fn trace_row<'r>(
+        &'r self,
+        writer: &mut RowWriter<'r>,
+        scratch: &mut Scratch,
+        late: &LateMaker<'_, 'f>,
+    ) {
         let (frame, table) = (&self.frame, &self.frame.edge_table);
         let Scratch {
             active,
@@ -292,16 +297,21 @@ impl<'f> RowTracer<'f> {
         if table.has_low() {
             let fetch = |regions: &[u32]| frame.fetch(regions);
             if low.enter(writer.row, table, self.level, frame.grid, fetch) {
-                return self.trace_overlaid(writer, scratch);
+                return self.trace_overlaid(writer, scratch, late);
             }
         }
         let depths = (depth_tester, &*depth_tests);
-        self.show(writer, active.spans(writer.row), depths, painters);
+        self.show(writer, active.spans(writer.row), depths, (painters, late));
     }
 
     /// Traces a row that low regions reach.
     #[inline(never)]
-    fn trace_overlaid<'r>(&'r self, writer: &mut RowWriter<'r>, scratch: &mut Scratch) {
+    fn trace_overlaid<'r>(
+        &'r self,
+        writer: &mut RowWriter<'r>,
+        scratch: &mut Scratch,
+        late: &LateMaker<'_, 'f>,
+    ) {
         let frame = &self.frame;
         let (low, depth_tests) = (&mut scratch.low, &mut scratch.depth_tests);
         let tests = depth_tests.count();
@@ -309,7 +319,7 @@ impl<'f> RowTracer<'f> {
         low.overlay(writer.row, &frame.edge_table, &scratch.active, resolve);
         writer.tally.edges += low.edge_count(writer.row) as u64;
         let depths = (&mut scratch.depth_tester, &*depth_tests);
-        self.show(writer, low.spans(), depths, &mut scratch.painters);
+        self.show(writer, low.spans(), depths, (&mut scratch.painters, late));
         // No other row can use the tests of gaps with low regions.
         depth_tests.truncate(tests);
     }
@@ -320,7 +330,7 @@ impl<'f> RowTracer<'f> {
         writer: &mut RowWriter<'r>,
         spans: impl ExactSizeIterator<Item = (u32, Visible)>,
         (depth_tester, depth_tests): (&mut DepthTester, &DepthTests),
-        painters: &mut Painters,
+        (painters, late): (&mut Painters, &LateMaker<'_, 'f>),
     ) {
         writer.tally.spans += spans.len() as u64;
         let mut from = 0;
@@ -330,11 +340,11 @@ impl<'f> RowTracer<'f> {
             match visible {
                 // The span has no columns in this row, but may have some in the next.
                 _ if columns.0 == columns.1 => {}
-                Visible::Only(shows) => self.write(writer, columns, shows, painters),
+                Visible::Only(shows) => self.write(writer, columns, shows, (painters, late)),
                 Visible::DepthTest(_) => {
                     let row = (&self.frame, depth_tests, writer.y);
                     for (columns, shows) in depth_tester.test(row, visible, columns) {
-                        self.write(writer, columns, shows, painters);
+                        self.write(writer, columns, shows, (painters, late));
                     }
                 }
             }
@@ -348,7 +358,7 @@ impl<'f> RowTracer<'f> {
         writer: &mut RowWriter<'r>,
         columns: Columns,
         shows: Shown,
-        painters: &mut Painters,
+        (painters, maker): (&mut Painters, &LateMaker<'_, 'f>),
     ) {
         match shows {
             Shown::Paint(paint) => writer.fill(columns, &self.frame.paints[paint]),
@@ -360,7 +370,7 @@ impl<'f> RowTracer<'f> {
             }
             Shown::Faces { mirrored, solid } => {
                 if let Appearance::LateFaces(late) = self.frame.solids(mirrored).appearance(solid) {
-                    self.write_faces(writer, columns, late, painters);
+                    self.write_faces(writer, columns, late, (painters, maker));
                 }
             }
             Shown::InDoubt => writer.decide(columns.0..columns.1, self.pixels),
@@ -374,7 +384,7 @@ impl<'f> RowTracer<'f> {
         writer: &mut RowWriter<'r>,
         columns: Columns,
         late: &'r LateFaces<'f>,
-        painters: &mut Painters,
+        (painters, maker): (&mut Painters, &LateMaker<'_, 'f>),
     ) {
         // The faces that a row is the first to show may take seconds. A row that is not whole is
         // never seen.
@@ -383,11 +393,11 @@ impl<'f> RowTracer<'f> {
         }
         let Painters {
             face_splitter,
-            spare,
+            late_work,
             ..
         } = painters;
-        let faces = late.get(&self.late, spare);
-        let cross = |first, edges: &mut _| late.cross(faces, first, edges, &self.late, spare);
+        let faces = late.get(writer.row, maker, late_work);
+        let cross = |first, edges: &mut _| late.cross(faces, first, edges, maker.source, late_work);
         let numbered = (late.number, faces);
         for (columns, shows) in face_splitter.split(numbered, writer.row, columns, cross) {
             match shows {

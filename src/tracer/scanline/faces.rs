@@ -49,20 +49,17 @@ impl FaceSplitter {
         columns: Columns,
         cross: impl FnOnce(u32, &mut RowEdges) -> Added,
     ) -> impl Iterator<Item = (Columns, Shown)> {
-        let first = row - row % ROWS as u32;
-        if self.first != Some(first) {
-            self.first = Some(first);
-            self.forget();
-        }
-        let slot = self.slots.get(self.slot_of[number] as usize);
-        if slot.is_none_or(|slot| slot.number != number) {
-            self.add(number, |edges| cross(first, edges));
-        }
-        let edges = &self.slots[self.slot_of[number] as usize].edges;
+        let edges = match faces.kept_edges(row) {
+            Some(edges) => edges,
+            None => {
+                let slot = self.slot(number, row, cross);
+                self.edges.sorted(&self.slots[slot].edges, row)
+            }
+        };
         self.parts.clear();
         self.coverage.clear(&faces.kinds);
         let (mut from, end) = columns;
-        for edge in self.edges.sorted(edges, row) {
+        for edge in edges {
             let to = edge.column().min(end);
             if from < to {
                 let (_, shown) = front_face(&faces.front_faces, &self.coverage);
@@ -84,6 +81,25 @@ impl FaceSplitter {
             self.parts.push(((from, end), shown));
         }
         self.parts.drain(..)
+    }
+
+    /// The slot with the edges of the late faces of this number in the band of a row.
+    fn slot(
+        &mut self,
+        number: usize,
+        row: u32,
+        cross: impl FnOnce(u32, &mut RowEdges) -> Added,
+    ) -> usize {
+        let first = row - row % ROWS as u32;
+        if self.first != Some(first) {
+            self.first = Some(first);
+            self.forget();
+        }
+        let slot = self.slots.get(self.slot_of[number] as usize);
+        if slot.is_none_or(|slot| slot.number != number) {
+            self.add(number, |edges| cross(first, edges));
+        }
+        self.slot_of[number] as usize
     }
 
     /// Adds the edges of the late faces of this number.

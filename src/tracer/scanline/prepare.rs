@@ -8,6 +8,7 @@ pub(super) mod frame;
 pub(super) mod front_faces;
 pub(super) mod late_faces;
 mod late_making;
+pub(super) mod late_source;
 pub(super) mod outline;
 pub(super) mod shadows;
 pub(super) mod solids;

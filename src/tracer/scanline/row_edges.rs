@@ -1,6 +1,7 @@
 //! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
 //! from one row to the next.
 
+use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -172,12 +173,69 @@ impl RowEdges {
         Added { begin, counts }
     }
 
-    /// Those edges of a row of the band that were added together, from the left.
-    pub(crate) fn sorted(&self, added: &Added, row: u32) -> impl Iterator<Item = EdgeAt> {
-        let edges = &self.edges[added.begin..added.begin + added.count(row)];
-        edges
-            .iter()
-            .map(move |rows| EdgeAt(rows[row as usize % ROWS]))
+    /// Those edges that were added together.
+    pub(crate) fn band(&self, added: &Added) -> BandEdges<'_> {
+        let most = added.counts.into_iter().max().unwrap_or(0);
+        BandEdges {
+            edges: &self.edges[added.begin..added.begin + most],
+            counts: added.counts.map(|count| count as u32),
+        }
+    }
+
+    /// Those edges of a row of the band that were added together.
+    pub(crate) fn sorted(&self, added: &Added, row: u32) -> RowOfEdges<'_> {
+        let row = row as usize % ROWS;
+        RowOfEdges {
+            edges: self.edges[added.begin..added.begin + added.counts[row]].iter(),
+            row,
+        }
+    }
+}
+
+/// The edges of some regions in each row of a band, sorted.
+#[derive(Clone, Copy)]
+pub(crate) struct BandEdges<'a> {
+    edges: &'a [[f64; ROWS]],
+    /// How many there are in each row.
+    counts: [u32; ROWS],
+}
+
+impl<'a> BandEdges<'a> {
+    /// The same in other memory.
+    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>) -> BandEdges<'k> {
+        BandEdges {
+            edges: memory.alloc_slice_copy(self.edges),
+            counts: self.counts,
+        }
+    }
+
+    /// How many bytes the edges take.
+    pub(crate) fn size(&self) -> usize {
+        size_of_val(self.edges)
+    }
+
+    /// The edges in a row, by its number in the band.
+    pub(crate) fn row(self, row: usize) -> RowOfEdges<'a> {
+        RowOfEdges {
+            edges: self.edges[..self.counts[row] as usize].iter(),
+            row,
+        }
+    }
+}
+
+/// The edges in a row, from the left.
+pub(crate) struct RowOfEdges<'a> {
+    edges: std::slice::Iter<'a, [f64; ROWS]>,
+    /// The number of the row in its band.
+    row: usize,
+}
+
+impl Iterator for RowOfEdges<'_> {
+    type Item = EdgeAt;
+
+    #[inline]
+    fn next(&mut self) -> Option<EdgeAt> {
+        self.edges.next().map(|rows| EdgeAt(rows[self.row]))
     }
 }
 

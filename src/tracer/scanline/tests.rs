@@ -9,6 +9,7 @@ use fearless_simd::Level;
 
 use super::grid::Columns;
 use super::prepare::frame::Crowd;
+use super::prepare::late_source::LateMaker;
 use super::prepare::solids::Appearance;
 use super::row_edges::EdgeAt;
 use super::visibility::coverage::Coverage;
@@ -172,6 +173,19 @@ pub(super) fn slivers(count: usize) -> String {
     scene
 }
 
+/// A scene of small tetrahedra that cast shadows on one another.
+pub(super) fn specks(count: usize) -> String {
+    let mut random = Random::new();
+    let mut number = |most: f64| most * (2.0 * random.fraction() - 1.0);
+    let mut scene = String::new();
+    for _ in 0..count {
+        let middle = [(); 3].map(|()| number(0.4));
+        let vertices = [(); 4].map(|()| middle.map(|x| x + number(0.06)));
+        scene += &format!("[[tetrahedron]]\nvertices = {vertices:?}\ncolor = [0.5, 0.5, 0.5]\n");
+    }
+    scene
+}
+
 /// The spans of a row, from the left: where each ends, and what is visible there.
 fn spans(tracer: &RowTracer<'_>, row: u32, scratch: &mut Scratch) -> Vec<(u32, Visible)> {
     let Scratch {
@@ -268,11 +282,13 @@ fn claims(
             let late = late.unwrap();
             let Painters {
                 face_splitter,
-                spare,
+                late_work,
                 ..
             } = painters;
-            let faces = late.get(&tracer.late, spare);
-            let cross = |first, edges: &mut _| late.cross(faces, first, edges, &tracer.late, spare);
+            let maker = LateMaker::new(&tracer.late);
+            let faces = late.get(row, &maker, late_work);
+            let cross =
+                |first, edges: &mut _| late.cross(faces, first, edges, &tracer.late, late_work);
             let parts = face_splitter.split((late.number, faces), row, columns, cross);
             let claims = parts.map(|(columns, shown)| match shown {
                 Shown::Paint(paint) => (columns, Claim::Shows(faces.paints[paint].decision)),
@@ -429,7 +445,7 @@ fn a_row_makes_no_late_faces_once_its_frame_is_cancelled() {
                 tally: Tally::default(),
                 progress,
             };
-            tracer.trace_row(&mut writer, &mut scratch);
+            tracer.trace_row(&mut writer, &mut scratch, &LateMaker::new(&tracer.late));
             tracer.late.taken.load(Relaxed)
         };
         let progress = Progress::default();

@@ -8,24 +8,25 @@
 //! A crowd can have millions of such shadows. So of most, only the borders of their half-planes are
 //! kept, and they are made again in the few bands in which that leaves a doubt; and where the memory
 //! for that is used up, they are made again in each band that they reach.
+//!
+//! A low solid is mostly seen in a few rows. Of one with few creases and shadows, the edges in these
+//! rows are kept instead, crossed while the regions are at hand; in other rows, these are made
+//! again.
 
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicUsize;
 
-use bumpalo_herd::Herd;
-use fearless_simd::{Level, Simd};
+use fearless_simd::Simd;
 
 use crate::number::Bounded;
-use crate::tracer::ladder::RowPixels;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::half_plane::{Border, HalfPlane};
 use crate::tracer::scanline::edges::region::{Region, enclose};
 use crate::tracer::scanline::edges::table::RegionKinds;
 use crate::tracer::scanline::fetch::fetch;
-use crate::tracer::scanline::grid::Grid;
+use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
-use crate::tracer::scanline::row_edges::BandRegions;
+use crate::tracer::scanline::row_edges::{BandEdges, BandRegions, RowOfEdges};
 use crate::tracer::scanline::write::paint::AllPaints;
 use crate::tracer::view_tetrahedra::TetrahedronInView;
 
@@ -39,7 +40,7 @@ pub(crate) struct LateFaces<'f> {
     pub(super) outlined: OutlinedFaces<'f>,
     pub(super) tetrahedron: &'f TetrahedronInView<Bounded>,
     /// They themselves, once they are made.
-    pub(super) made: OnceLock<SplitFaces<'f>>,
+    pub(super) made: OnceLock<&'f SplitFaces<'f>>,
 }
 
 /// Front faces with regions and paints of their own.
@@ -50,8 +51,31 @@ pub(crate) struct SplitFaces<'f> {
     pub(crate) kinds: RegionKinds<'f>,
     /// The paints of the faces.
     pub(crate) paints: AllPaints<'f>,
-    /// The regions, unless there was no memory for them.
-    pub(super) regions: Option<&'f [KeptRegion<'f>]>,
+    /// What is kept of the regions.
+    pub(super) kept: Kept<'f>,
+}
+
+/// What is kept of the regions of late faces.
+pub(super) enum Kept<'f> {
+    Regions(&'f [KeptRegion<'f>]),
+    /// The edges in the rows of a band, which begins at any row.
+    Edges {
+        first: u32,
+        band: BandEdges<'f>,
+    },
+    /// There was no memory for anything.
+    Nothing,
+}
+
+impl<'f> SplitFaces<'f> {
+    /// The edges in a row, if they are kept.
+    pub(crate) fn kept_edges(&self, row: u32) -> Option<RowOfEdges<'f>> {
+        let Kept::Edges { first, band } = self.kept else {
+            return None;
+        };
+        let row = row.checked_sub(first)? as usize;
+        (row < ROWS).then(|| band.row(row))
+    }
 }
 
 /// A region of late faces, as it is kept.
@@ -74,20 +98,6 @@ pub(super) struct Cast {
     pub(super) face: u8,
     /// The number of the tetrahedron in the scene.
     pub(super) caster: u16,
-}
-
-/// What late faces are made from.
-pub(crate) struct LateSource<'f> {
-    pub(crate) pixels: &'f dyn RowPixels,
-    pub(crate) grid: Grid,
-    pub(crate) level: Level,
-    /// The memory for what threads make.
-    pub(crate) threads: &'f Herd,
-    /// How many bytes of it regions may take. Each thread may go beyond this with one solid, and
-    /// then each shadow takes what tells its caster and its rows.
-    pub(crate) most: usize,
-    /// How many they take.
-    pub(crate) taken: AtomicUsize,
 }
 
 impl<'f> LateFaces<'f> {

@@ -2,10 +2,8 @@
 
 use std::cell::Cell;
 use std::iter;
-use std::sync::atomic::Ordering::Relaxed;
 
 use bumpalo::Bump;
-use bumpalo_herd::Member;
 
 use crate::image::MAX_SIZE;
 use crate::scene::Solid;
@@ -21,8 +19,9 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::face_plane;
 use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::late_faces::{
-    Cast, KeptRegion, KeptRegions, LateFaces, LateSource, SplitFaces,
+    Cast, Kept, KeptRegion, KeptRegions, LateFaces, SplitFaces,
 };
+use crate::tracer::scanline::prepare::late_source::{LateMaker, LateSource, LateWork};
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::prepare::shadows::shadows_on_face;
 use crate::tracer::scanline::row_edges::{Added, RowEdges};
@@ -32,6 +31,9 @@ use crate::tracer::tetrahedron::entered;
 /// In a solid of more rows, each shadow's own rows are found.
 const FEW_ROWS: u32 = 4 * ROWS as u32;
 
+/// In a solid of no more rows, mostly one band tells all that is asked for.
+const LOW: u32 = 2 * ROWS as u32;
+
 /// Few solids have more creases and shadows.
 const FEW_REGIONS: usize = 16;
 
@@ -39,17 +41,19 @@ const FEW_REGIONS: usize = 16;
 const _: () = assert!(MAX_SIZE <= u16::MAX as u32);
 
 impl<'f> LateFaces<'f> {
-    /// The faces. The first call makes them; `spare` is memory for the work, free afterwards.
-    pub(crate) fn get(&self, source: &LateSource<'f>, spare: &mut Bump) -> &SplitFaces<'f> {
+    /// The faces. The first call makes them, for a row that shows the solid.
+    pub(crate) fn get(
+        &self,
+        row: u32,
+        maker: &LateMaker<'_, 'f>,
+        work: &mut LateWork,
+    ) -> &'f SplitFaces<'f> {
         self.made.get_or_init(|| {
-            spare.reset();
-            let memory = source.threads.get();
-            let color = |decision| source.pixels.color(decision);
-            let (faces, regions, paints) = self.make(source, &color, spare);
-            let has_memory = source.taken.load(Relaxed) < source.most;
-            let is_ellipse = |region: &Region<'_>| region.ellipse().is_some();
-            let is_kept = has_memory || !regions.all.iter().any(is_ellipse);
-            SplitFaces {
+            work.spare.reset();
+            let memory = maker.memory();
+            let color = |decision| maker.source.pixels.color(decision);
+            let (faces, regions, paints) = self.make(maker.source, &color, &work.spare);
+            memory.alloc(SplitFaces {
                 front_faces: FrontFaces {
                     all: memory.alloc_slice_copy(faces.all),
                     pairs: memory.alloc_slice_copy(faces.pairs),
@@ -58,9 +62,9 @@ impl<'f> LateFaces<'f> {
                     all: memory.alloc_slice_copy(regions.kinds.all),
                     receivers: regions.kinds.receivers,
                 },
-                paints: paints.kept_in(&memory),
-                regions: is_kept.then(|| self.keep((&regions, has_memory), source, &memory)),
-            }
+                paints: paints.kept_in(memory),
+                kept: self.keep(&regions, row, maker, (&work.spare, &mut work.edges)),
+            })
         })
     }
 
@@ -79,14 +83,40 @@ impl<'f> LateFaces<'f> {
         (faces, parts.edge_table.regions(), parts.paints.all())
     }
 
-    /// Copies regions to memory that the frame keeps, those of shadows whole only if it
-    /// `has_memory`.
+    /// Keeps what tells the edges of the regions; `row` is the first that needs them.
     fn keep(
         &self,
+        regions: &Regions<'_>,
+        row: u32,
+        maker: &LateMaker<'_, 'f>,
+        (spare, edges): (&Bump, &mut RowEdges),
+    ) -> Kept<'f> {
+        let has_memory = maker.has_memory();
+        let (from, to) = self.outlined.rows;
+        let is_low = to - from <= LOW && regions.all.len() <= FEW_REGIONS;
+        if has_memory && is_low {
+            edges.clear();
+            let added = cross(regions, row, edges, maker.source, spare);
+            let band = edges.band(&added).kept_in(maker.memory());
+            maker.take(band.size());
+            return Kept::Edges { first: row, band };
+        }
+        let is_ellipse = |region: &Region<'_>| region.ellipse().is_some();
+        if has_memory || !regions.all.iter().any(is_ellipse) {
+            Kept::Regions(self.keep_regions((regions, has_memory), maker))
+        } else {
+            Kept::Nothing
+        }
+    }
+
+    /// Copies regions to memory that the frame keeps, those of shadows whole only if it
+    /// `has_memory`.
+    fn keep_regions(
+        &self,
         (regions, has_memory): (&Regions<'_>, bool),
-        source: &LateSource<'f>,
-        memory: &Member<'f>,
+        maker: &LateMaker<'_, 'f>,
     ) -> &'f [KeptRegion<'f>] {
+        let (source, memory) = (maker.source, maker.memory());
         let picture = source.pixels.bounded();
         let view = picture.view(self.mirrored);
         // A tetrahedron's shadow has all rows of the solid. So each has a region, in the order of
@@ -143,9 +173,7 @@ impl<'f> LateFaces<'f> {
             })
         });
         let kept = memory.alloc_slice_fill_iter(regions);
-        source
-            .taken
-            .fetch_add(taken.get() + size_of_val(kept), Relaxed);
+        maker.take(taken.get() + size_of_val(kept));
         kept
     }
 
@@ -156,24 +184,21 @@ impl<'f> LateFaces<'f> {
         first: u32,
         edges: &mut RowEdges,
         source: &LateSource<'f>,
-        spare: &mut Bump,
+        work: &mut LateWork,
     ) -> Added {
-        spare.reset();
-        let reach = |(from, to): (u32, u32)| from < first + ROWS as u32 && first < to;
+        work.spare.reset();
+        let spare = &work.spare;
         let (level, grid) = (source.level, source.grid);
-        let Some(regions) = faces.regions else {
+        let Kept::Regions(regions) = faces.kept else {
             // Nobody asks for these paints.
             let (_, regions, _) = self.make(source, &|_| [0.0; 3], spare);
-            let numbers = (0..).zip(regions.all);
-            let numbers = numbers.filter(|(_, region)| reach(region.rows()));
-            let numbers = collect(spare, numbers.map(|(number, _)| number));
-            return edges.add(&regions, numbers, first, level, grid);
+            return cross(&regions, first, edges, source, spare);
         };
         let numbers = (0..).zip(regions).filter(|(_, region)| match region {
-            KeptRegion::Whole(region) => reach(region.rows()),
+            KeptRegion::Whole(region) => reaches(region.rows(), first),
             KeptRegion::Shadow {
                 rows: (from, to), ..
-            } => reach((u32::from(*from), u32::from(*to))),
+            } => reaches((u32::from(*from), u32::from(*to)), first),
         });
         let numbers = collect(spare, numbers.map(|(number, _)| number));
         let again = |cast, band: &mut BandColumns| {
@@ -208,42 +233,91 @@ impl<'f> LateFaces<'f> {
     }
 }
 
+/// Whether some rows reach into the band of rows from `first` on.
+fn reaches((from, to): (u32, u32), first: u32) -> bool {
+    from < first + ROWS as u32 && first < to
+}
+
+/// Adds the edges of all of these regions in the band of rows from `first` on.
+fn cross(
+    regions: &Regions<'_>,
+    first: u32,
+    edges: &mut RowEdges,
+    source: &LateSource<'_>,
+    spare: &Bump,
+) -> Added {
+    let numbers = (0..).zip(regions.all);
+    let numbers = numbers.filter(|(_, region)| reaches(region.rows(), first));
+    let numbers = collect(spare, numbers.map(|(number, _)| number));
+    edges.add(regions, numbers, first, source.level, source.grid)
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 mod tests {
     use super::*;
     use crate::stage::Stage;
+    use crate::tracer::scanline::RowTracer;
     use crate::tracer::scanline::prepare::solids::Appearance;
-    use crate::tracer::scanline::tests::{CROWDED, CROWDED_WITHOUT_MEMORY, slivers, with_tracer};
+    use crate::tracer::scanline::tests::{
+        CROWDED, CROWDED_WITHOUT_MEMORY, slivers, specks, with_tracer,
+    };
+
+    /// All late faces of a frame.
+    fn all_of<'t, 'f>(tracer: &'t RowTracer<'f>) -> impl Iterator<Item = &'t LateFaces<'f>> {
+        [false, true].into_iter().flat_map(|mirrored| {
+            let solids = tracer.frame.solids(mirrored);
+            // Without a mirror, these are those seen directly.
+            let all = solids
+                .appearance
+                .iter()
+                .filter(move |_| solids.mirrored == mirrored);
+            all.filter_map(|appearance| match appearance {
+                Appearance::LateFaces(late) => Some(*late),
+                _ => None,
+            })
+        })
+    }
+
+    /// The edges of late faces in a band of rows, with their regions made again.
+    fn made_again<'f>(
+        late: &LateFaces<'f>,
+        first: u32,
+        source: &LateSource<'f>,
+        spare: &mut Bump,
+    ) -> (RowEdges, Added) {
+        spare.reset();
+        let (_, regions, _) = late.make(source, &|_| [0.0; 3], spare);
+        let numbers: Vec<u32> = (0..regions.all.len() as u32).collect();
+        let mut edges = RowEdges::default();
+        let added = edges.add(&regions, &numbers, first, source.level, source.grid);
+        (edges, added)
+    }
 
     #[test]
     fn kept_regions_have_the_columns_of_those_that_are_made_again() {
-        let (text, size) = (slivers(60), 128);
+        let (text, size) = (slivers(100), 128);
         let crowds = [CROWDED, CROWDED_WITHOUT_MEMORY].into_iter();
         for (alpha, crowd) in crowds.flat_map(|crowd| [(0.0, crowd), (0.3, crowd)]) {
             with_tracer(&text, (Stage::Reflection, alpha, size), crowd, |tracer| {
                 let (source, mut spare) = (&tracer.late, Bump::new());
+                let (maker, mut work) = (LateMaker::new(source), LateWork::default());
                 let (mut shadows, mut whole, mut edges) = (0, 0, 0);
-                let solids = [false, true].map(|mirrored| tracer.frame.solids(mirrored).appearance);
-                for appearance in solids.into_iter().flatten() {
-                    let Appearance::LateFaces(late) = appearance else {
+                for late in all_of(tracer) {
+                    let faces = late.get(late.outlined.rows.0, &maker, &mut work);
+                    let Kept::Regions(regions) = faces.kept else {
                         continue;
                     };
-                    let faces = late.get(source, &mut spare);
-                    for kept in faces.regions.into_iter().flatten() {
+                    for kept in regions {
                         match kept {
                             KeptRegion::Whole(_) => whole += 1,
                             KeptRegion::Shadow { .. } => shadows += 1,
                         }
                     }
                     for first in (0..size).step_by(ROWS) {
-                        let (mut kept, mut made) = (RowEdges::default(), RowEdges::default());
-                        let of_kept = late.cross(faces, first, &mut kept, source, &mut spare);
-                        spare.reset();
-                        let (_, regions, _) = late.make(source, &|_| [0.0; 3], &spare);
-                        let numbers: Vec<u32> = (0..regions.all.len() as u32).collect();
-                        let of_made =
-                            made.add(&regions, &numbers, first, source.level, source.grid);
+                        let mut kept = RowEdges::default();
+                        let of_kept = late.cross(faces, first, &mut kept, source, &mut work);
+                        let (made, of_made) = made_again(late, first, source, &mut spare);
                         for row in first..first + ROWS as u32 {
                             assert!(
                                 kept.sorted(&of_kept, row).eq(made.sorted(&of_made, row)),
@@ -255,6 +329,41 @@ mod tests {
                 }
                 let counts = (shadows, whole, edges);
                 assert!(shadows > 500 && whole > 50 && edges > 2000, "{counts:?}");
+            });
+        }
+    }
+
+    #[test]
+    fn kept_edges_are_those_of_regions_that_are_made_again() {
+        let (text, size) = (specks(200), 128);
+        for alpha in [0.0, 0.3] {
+            with_tracer(&text, (Stage::Reflection, alpha, size), CROWDED, |tracer| {
+                let (source, mut spare) = (&tracer.late, Bump::new());
+                let (maker, mut work) = (LateMaker::new(source), LateWork::default());
+                let (mut kept, mut others) = (0, 0);
+                for (late, above) in all_of(tracer).zip((0..4).cycle()) {
+                    let (from, to) = late.outlined.rows;
+                    let asked = (from + above).min(to - 1);
+                    let faces = late.get(asked, &maker, &mut work);
+                    if !matches!(faces.kept, Kept::Edges { .. }) {
+                        continue;
+                    }
+                    for row in from..to {
+                        let first = row - row % ROWS as u32;
+                        let (made, of_made) = made_again(late, first, source, &mut spare);
+                        let Some(edges) = faces.kept_edges(row) else {
+                            assert!(!(asked..asked + ROWS as u32).contains(&row));
+                            others += 1;
+                            continue;
+                        };
+                        assert!(
+                            edges.eq(made.sorted(&of_made, row)),
+                            "α = {alpha}, row {row}"
+                        );
+                        kept += of_made.count(row);
+                    }
+                }
+                assert!(kept > 500 && others > 50, "{kept}, {others}");
             });
         }
     }
