@@ -127,6 +127,8 @@ impl Casters {
             }
             all.len() as u32
         });
+        // They live as long as the scene.
+        all.shrink_to_fit();
         OnFaces { all, ends }
     }
 
