@@ -8,8 +8,9 @@
 //! ellipse is a polynomial in X and Y, the position on the screen in thirds of a pixel from its
 //! centre. In a row of pixels Y is fixed, and the row's edges are roots of these polynomials.
 //!
-//! A root is computed in f64 with a bound on its error, derived where it is used. Columns beyond
-//! the bound need no test. The columns within it, rarely one, are tested one by one.
+//! A root is computed with a bound on its error, derived where it is used: of a line in f32, of an
+//! ellipse in f64. Columns beyond the bound need no test. The columns within it, rarely one, are
+//! tested one by one.
 
 use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
@@ -21,6 +22,9 @@ use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
 use crate::tracer::scanline::edges::half_plane::{HalfPlane, Root};
 use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::grid::{Grid, Position, ROWS, offsets};
+
+/// So few columns are searched one by one as fast as in any other way.
+const FEW_COLUMNS: u32 = 8;
 
 /// The intersection of half-planes and of an ellipse, if there is one.
 pub(crate) struct Region<'f> {
@@ -125,7 +129,8 @@ impl<'f> Region<'f> {
     /// Asks for the memory that crossing it takes, but for what it is clipped to.
     #[inline(always)]
     pub(crate) fn fetch(&self) {
-        if let [first, .., last] | [first @ last] = self.half_planes {
+        let half_planes = self.half_planes;
+        if let (Some(first), Some(last)) = (half_planes.first(), half_planes.last()) {
             fetch(first.border());
             fetch(last.border());
         }
@@ -174,7 +179,7 @@ impl<'f> Region<'f> {
                 continue;
             }
             let y = grid.coordinate(row + i as u32);
-            if self.all_half_planes().any(|each| each.misses_row(y)) {
+            if to > from + FEW_COLUMNS && self.misses((from, to), y, grid) {
                 to = from;
             }
             let is_certain = |column: u32| certain.0 <= column && column < certain.1;
@@ -219,6 +224,16 @@ impl<'f> Region<'f> {
                 band.filled &= !(1 << i);
             }
         }
+    }
+
+    /// Whether the columns in the row at Y lie beside a half-plane, as both ends then do. A search
+    /// from them would go through all.
+    fn misses(&self, (from, to): (u32, u32), y: f64, grid: Grid) -> bool {
+        let ends = [from, to - 1].map(|column| grid.coordinate(column));
+        self.all_half_planes().any(|half_plane| {
+            let is_beside = |&x: &f64| half_plane.decide_near(x, y, grid) == Some(false);
+            ends.iter().all(is_beside)
+        })
     }
 
     /// Its half-planes and those that it is clipped to.
