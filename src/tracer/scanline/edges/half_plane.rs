@@ -8,7 +8,7 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 
-use crate::number::rounding::{INFLATION, U};
+use crate::number::rounding::{INFLATION, INFLATION_F32, U, U_F32};
 use crate::number::{Bounded, FourBounded, Real, Ring};
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut, NOWHERE};
@@ -38,28 +38,23 @@ struct Terms {
 
 /// The border of a half-plane, as rows cross it: in f32, with bounds that cover that.
 ///
-/// A row crosses a sloping border at its root, at least `low` + `per_y` · Y and at most `high` +
-/// `per_y` · Y, in columns; on the side on which the half-plane does not end, the bound is infinite.
+/// A row crosses a *sloping* border at its root, at least `low` + `per_y` · Y and at most `high` +
+/// `per_y` · Y, in columns. On the side on which the half-plane does not end, the bound is infinite;
+/// `doubt` is how far the finite bound can be from one on the root's other side.
+///
+/// Of a *level* border, and of one of which f64 does not tell that it slopes, `low` + `per_y` · Y
+/// stands in for the sum of the half-plane, and `high` bounds the error of that. `doubt` is
+/// [`LEVEL`].
 #[derive(Clone, Copy)]
 pub(crate) struct Border {
     per_y: f32,
-    /// Or for a level border, the constant of the sum, whose `per_y` is that above.
     low: f32,
-    /// Or for a level border, a bound on the error of that sum as a stand-in for the whole one.
     high: f32,
-    /// How far one bound on the root can be from another on its other side; [`LEVEL`], which is
-    /// negative, for a border that is level, or of which f64 does not tell that it is not.
     doubt: f32,
 }
 
-/// See [`Border`].
+/// No doubt is negative.
 const LEVEL: f32 = -1.0;
-
-/// The largest relative error of one rounding to f32.
-const V: f64 = f32::EPSILON as f64 / 2.0;
-
-/// 1 + 8v: what a bound of a few roundings to f32 is multiplied by, which rounds itself.
-const ROUND_UP: f64 = 1.0 + 8.0 * V;
 
 impl Border {
     /// The border of a half-plane of which every pixel is in doubt.
@@ -91,13 +86,13 @@ impl Border {
         let slack =
             ((carried + magnitude * (8.0 * U)) * inverse.abs() + 16.0 * U * size) * INFLATION;
         // In f32, per_y rounds by v, which moves the root by v of |per_y · Y|, and so does the
-        // product with Y; the bound at Y = 0 rounds by v of itself, and the sum by v of itself. The
-        // sum is between 0 and N where it matters: if it were a bound on the wrong side of the root
-        // beyond N, the root would be there, too.
-        let slack = (slack + (at.abs() + root_per_y.abs() * (2.0 * max) + size) * V) * ROUND_UP;
+        // product with Y; the bound at Y = 0 rounds by v of itself. The sum rounds by v of N between 0
+        // and N. Below 0 and beyond N are no columns, and rounding is monotone: there it stays.
+        let slack =
+            (slack + (at.abs() + root_per_y.abs() * (2.0 * max) + size) * U_F32) * INFLATION_F32;
         // A bound lies within twice the slack from the root, and this one on its other side after
         // one more rounding.
-        let doubt = (slack * 2.0 + size * V) * ROUND_UP;
+        let doubt = (slack * 2.0 + size * U_F32) * INFLATION_F32;
         // Then f32 holds all bounds.
         let is_small = slack.simd_lt(2.0_f64.powi(90));
         // The sum rounds by less than 2u of its terms twice.
@@ -106,9 +101,12 @@ impl Border {
         let is_rightward = inverse.simd_gt(0.0);
         // In f32 the terms round by v of themselves, the product by v, and the sum by v of its
         // terms; where they are tiny, by less than the smallest normal number.
-        let level_error = (error + magnitude_of_x + magnitude * (3.0 * V)) * ROUND_UP
+        let level_error = (error + magnitude_of_x + magnitude * (3.0 * U_F32)) * INFLATION_F32
             + f64::from(f32::MIN_POSITIVE);
         let infinity = f64x4::splat(simd, f64::INFINITY);
+        // Where f32 may not hold the sum, every row is in doubt.
+        let is_held = magnitude.simd_lt(2.0_f64.powi(120));
+        let level_error = is_held.select(level_error, infinity);
         let low = is_rightward.select(at - slack, -infinity);
         let high = is_rightward.select(infinity, at + slack);
         let per_y = is_sloping.select(root_per_y, per_y.value());
@@ -132,8 +130,8 @@ impl Border {
         self.doubt < 0.0
     }
 
-    /// Whether a row can enter the half-plane at the root, and not leave it there.
-    fn is_left_side(&self) -> bool {
+    /// Whether the half-plane lies to the right of the root of a sloping border.
+    fn is_rightward(&self) -> bool {
         self.low > f32::NEG_INFINITY
     }
 
@@ -141,7 +139,7 @@ impl Border {
     pub(super) fn root(&self) -> Option<Root> {
         let [per_y, low, high, doubt] =
             [self.per_y, self.low, self.high, self.doubt].map(f64::from);
-        let rightward = self.is_left_side();
+        let rightward = self.is_rightward();
         let ends = if rightward {
             [low, low + doubt]
         } else {
@@ -341,11 +339,6 @@ impl<'f> HalfPlane<'f> {
         }
     }
 
-    /// Whether the border is level, and the row at Y not in the half-plane.
-    pub(crate) fn misses_row(&self, y: f64) -> bool {
-        self.border.is_level() && self.terms.per_x.is_zero() && self.decide(0.0, y) == Some(false)
-    }
-
     pub(crate) fn border(&self) -> &Border {
         &self.border
     }
@@ -448,7 +441,7 @@ mod tests {
             let y = grid.coordinate(random.below(500) as u32);
             let per_y = 2.0 * random.fraction() - 1.0;
             // The row lies about as far from the border as f32 can tell.
-            let away = 32.0 * V * (2.0 * random.fraction() - 1.0);
+            let away = 32.0 * U_F32 * (2.0 * random.fraction() - 1.0);
             let constant = -per_y * y * (1.0 + away);
             let [constant, per_x, per_y] = [constant, 0.0, per_y].map(Bounded::exact);
             let half_plane = HalfPlane::new(constant, per_x, per_y, true, (grid, &arena));
@@ -472,5 +465,86 @@ mod tests {
             }
         }
         assert!(decided > 500 && doubtful > 100, "{decided}, {doubtful}");
+    }
+
+    /// What rows know of a half-plane with these terms: the columns outside of which it has none,
+    /// and columns that it has.
+    fn crossed(terms: [f64; 3], y: f64, grid: Grid) -> ColumnEnclosure<f64> {
+        let arena = Bump::new();
+        let [constant, per_x, per_y] = terms.map(Bounded::exact);
+        let half_plane = HalfPlane::new(constant, per_x, per_y, true, (grid, &arena));
+        let all = [0.0, f64::from(grid.size)];
+        let mut enclosure = ColumnEnclosure {
+            possible: all,
+            certain: all,
+        };
+        dispatch!(Level::baseline(), simd => half_plane.cut_row(simd, y, &mut enclosure));
+        enclosure
+    }
+
+    #[test]
+    fn rows_cross_half_planes_where_whole_numbers_do() {
+        let mut random = Random::new();
+        let mut below = |most: i128| random.below(most as usize) as i128;
+        let sizes = [1, 2, 3, 7, 8, 24, 501, 8191, 8192, 16383, 16384];
+        let (mut certain, mut doubtful) = (0, 0);
+        for _ in 0..40_000 {
+            let size = sizes[below(sizes.len() as i128) as usize];
+            // Twice a coordinate.
+            let twice = |number: i128| 3 * (2 * number - size);
+            let mut number = || {
+                let most = 1 << below(34);
+                below(2 * most + 1) - most
+            };
+            let (per_x, per_y, beside) = (number(), number(), number());
+            let (column, row) = (below(size), below(size));
+            // The border passes through the pixel, or close to it.
+            let beside = beside / (1 + below(1 << 30));
+            let constant = beside - per_x * twice(column) - per_y * twice(row);
+            let scale = 2.0_f64.powi(below(200) as i32 - 140);
+            let terms = [constant as f64 / 2.0, per_x as f64, per_y as f64];
+            let grid = Grid::new(size as u32);
+            for row in (row - 1).max(0)..(row + 2).min(size) {
+                let y = grid.coordinate(row as u32);
+                let ColumnEnclosure {
+                    possible,
+                    certain: sure,
+                } = crossed(terms.map(|term| term * scale), y, grid);
+                let near = (column - 2).max(0)..(column + 3).min(size);
+                for column in near.chain([0, size - 1]) {
+                    let sum = constant + per_x * twice(column) + per_y * twice(row);
+                    let holds = |[from, to]: [f64; 2]| (from..=to).contains(&(column as f64));
+                    let (is_possible, is_certain) = (holds(possible), holds(sure));
+                    assert!(
+                        (sum < 0 || is_possible) && (sum >= 0 || !is_certain),
+                        "{terms:?} · {scale}, N = {size}, ({column}, {row}): {possible:?} {sure:?}"
+                    );
+                    certain += u32::from(is_possible == is_certain);
+                    doubtful += u32::from(is_possible != is_certain);
+                }
+            }
+        }
+        assert!(
+            doubtful > 1000 && 4 * doubtful < certain,
+            "{doubtful}, {certain}"
+        );
+    }
+
+    #[test]
+    fn sums_beyond_f32_are_in_doubt() {
+        let grid = Grid::new(4);
+        for scale in [2.0_f64.powi(118), 2.0_f64.powi(127), 2.0_f64.powi(200)] {
+            let [constant, per_y] = [scale, -scale / 3.0];
+            let enclosure = crossed([constant, 0.0, per_y], 3.0, grid);
+            let in_doubt =
+                (enclosure.certain[1], enclosure.possible[1]) == (f64::from(NOWHERE), 4.0);
+            assert!(in_doubt, "{scale}");
+            let enclosure = crossed([constant, 0.0, 0.0], 3.0, grid);
+            assert_eq!(
+                enclosure.certain[1] == 4.0,
+                scale < 2.0_f64.powi(120),
+                "{scale}"
+            );
+        }
     }
 }
