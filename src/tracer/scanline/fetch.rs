@@ -1,7 +1,7 @@
 //! Memory that is asked for before it is needed.
 
-/// Asks for the memory of what is needed soon. What is not at hand makes the work that needs it
-/// wait, each time anew; what is asked for in a row comes at once.
+/// Reads what is needed soon, so that it is in the cache by then. Work that needs what is not waits
+/// for it, each time anew; what is read side by side comes at once. Nothing but time depends on it.
 #[inline(always)]
 pub(crate) fn fetch<T: Copy>(value: &T) {
     std::hint::black_box(*value);

@@ -93,7 +93,7 @@ impl<'f> LateFaces<'f> {
     ) -> Kept<'f> {
         let has_memory = maker.has_memory();
         let (from, to) = self.outlined.rows;
-        let is_low = to - from <= LOW && regions.all.len() <= FEW_REGIONS;
+        let is_low = to <= from + LOW && regions.all.len() <= FEW_REGIONS;
         if has_memory && is_low {
             edges.clear();
             let added = cross(regions, row, edges, maker.source, spare);
