@@ -27,7 +27,7 @@ pub(crate) struct Casters {
     projections: Projections,
     /// By the number of the tetrahedron.
     prisms: Vec<Prisms>,
-    on_spheres: Vec<OnceLock<Vec<u16>>>,
+    on_spheres: Vec<OnceLock<CasterList>>,
     on_faces: Vec<OnceLock<OnFaces>>,
 }
 
@@ -35,13 +35,14 @@ pub(crate) struct Casters {
 #[derive(Clone, Debug)]
 struct OnFaces {
     /// Those of face 0, then those of face 1, and so on.
-    all: SmallVec<[u16; FEW_CASTERS]>,
+    all: CasterList,
     /// Where those of each face end.
     ends: [u32; 4],
 }
 
-/// Most tetrahedra of a crowd have no more casters: those are read without a look elsewhere.
-const FEW_CASTERS: usize = 8;
+/// The numbers of casters. Most solids of a crowd have no more than eight: these are read without a
+/// look elsewhere.
+type CasterList = SmallVec<[u16; 8]>;
 
 impl OnFaces {
     fn of(&self, face: usize) -> &[u16] {
@@ -104,11 +105,11 @@ impl Casters {
         self.balls.len() <= FEW
     }
 
-    fn find_on_sphere(&self, sphere: usize) -> Vec<u16> {
+    fn find_on_sphere(&self, sphere: usize) -> CasterList {
         let ball = Balls::of(&self.balls[sphere]);
         let is_caster = |&caster: &u16| !self.misses(caster, None, ball);
         let near = self.near(sphere);
-        let mut casters: Vec<u16> = near.into_iter().filter(is_caster).collect();
+        let mut casters: CasterList = near.into_iter().filter(is_caster).collect();
         // They live as long as the scene.
         casters.shrink_to_fit();
         casters
@@ -117,7 +118,7 @@ impl Casters {
     fn find_on_faces(&self, tetrahedron: usize) -> OnFaces {
         let prisms = &self.prisms[tetrahedron - self.on_spheres.len()];
         let near = self.near(tetrahedron);
-        let mut all = SmallVec::new();
+        let mut all = CasterList::new();
         let ends = [0, 1, 2, 3].map(|face| {
             if let Some(light) = &prisms.light[face] {
                 let vertices = vertices_of(face, &prisms.vertices);

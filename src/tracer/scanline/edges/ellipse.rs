@@ -10,6 +10,7 @@ use crate::number::{Bounded, Divisor, Real};
 use crate::tracer::line::Direction;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
+use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::grid::{Grid, in_columns};
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
@@ -35,6 +36,15 @@ pub(crate) struct Ellipse {
     slack: f64,
     /// Whether all of these are finite; otherwise every column is in doubt.
     is_bounded: bool,
+}
+
+impl Ellipse {
+    /// Asks for its memory.
+    #[inline(always)]
+    pub(crate) fn fetch(&self) {
+        fetch(&self.middle.0);
+        fetch(&self.is_bounded);
+    }
 }
 
 /// m as a function of Y: `slope` · (Y − `zero`).

@@ -135,7 +135,7 @@ impl<'f> Region<'f> {
             fetch(last.border());
         }
         if let Some(ellipse) = self.ellipse {
-            fetch(ellipse);
+            ellipse.fetch();
         }
     }
 
