@@ -6,16 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Compiled with -DMISTAKE=BGR, or another of these, it makes that mistake: the tests need some. */
-enum {
-    NONE, UPSIDE_DOWN, TRANSPOSED, HALF_PIXEL_OFF, GAMMA, BGR, BYTES, DEGREES,
-    LIGHT_SIGN, LIGHT_DIRECTION, SHADOW_DIRECTION, SHADOW_RAY, SHADOW_BEHIND, SHADOW_LINE,
-    SHADOW_OWN, FAR_ROOT, FAR_ROOTS, SHADOW_ACNE
-};
-#define MAKES(one, other) (MISTAKE == one || MISTAKE == other)
-#ifndef MISTAKE
-#define MISTAKE NONE
-#endif
+/* With the name of a mistake as its argument, it makes that: the tests need some. */
+#define MISTAKES(EACH) \
+    EACH(NONE) EACH(UPSIDE_DOWN) EACH(TRANSPOSED) EACH(HALF_PIXEL_OFF) EACH(GAMMA) EACH(BGR) \
+    EACH(BYTES) EACH(DEGREES) EACH(LIGHT_SIGN) EACH(LIGHT_DIRECTION) EACH(SHADOW_DIRECTION) \
+    EACH(SHADOW_RAY) EACH(SHADOW_BEHIND) EACH(SHADOW_LINE) EACH(SHADOW_OWN) EACH(FAR_ROOT) \
+    EACH(FAR_ROOTS) EACH(SHADOW_ACNE)
+#define NUMBER(name) name,
+#define NAME(name) #name,
+enum { MISTAKES(NUMBER) MISTAKE_COUNT };
+static const char *const names[] = {MISTAKES(NAME)};
+static int mistake = NONE;
+#define MAKES(one, other) (mistake == one || mistake == other)
 
 typedef struct { double x, y, z; } Vector;
 typedef struct { Vector center; double radius; Vector color; } Sphere;
@@ -90,7 +92,7 @@ static bool meet_tetrahedron(const Tetrahedron *solid, Ray ray,
 static bool meet(int solid, Ray ray, double *enter, double *leave, Vector *normal) {
     if (solid < sphere_count)
         return meet_sphere(&spheres[solid], ray, enter, leave, normal);
-    if (MISTAKE == FAR_ROOTS) {
+    if (mistake == FAR_ROOTS) {
         Ray back = {ray.origin, scale(-1, ray.direction)};
         bool met = meet_tetrahedron(&tetrahedra[solid - sphere_count], back, enter, leave, normal);
         *enter = -*enter;
@@ -123,7 +125,7 @@ static bool meet_surface(Ray ray, double *t) {
 }
 
 static Vector to_light(void) {
-    return unit(scale(MISTAKE == LIGHT_DIRECTION ? 1 : -1, light_direction));
+    return unit(scale(mistake == LIGHT_DIRECTION ? 1 : -1, light_direction));
 }
 
 /* Whether a solid but this one stands between a point and the light. */
@@ -134,7 +136,7 @@ static bool is_hidden(Vector point, int but) {
         Vector normal;
         if (solid == but && !MAKES(SHADOW_ACNE, SHADOW_OWN))
             continue;
-        bool takes_all = MAKES(SHADOW_BEHIND, SHADOW_LINE) || MISTAKE == SHADOW_OWN;
+        bool takes_all = MAKES(SHADOW_BEHIND, SHADOW_LINE) || mistake == SHADOW_OWN;
         if (meet(solid, ray, &enter, &leave, &normal) && (leave > 0 || takes_all))
             return true;
     }
@@ -144,14 +146,14 @@ static bool is_hidden(Vector point, int but) {
 /* Equation 4-1 where a ray hits a solid. */
 static Vector shade(Ray ray, Hit hit, bool shadows) {
     Vector point = at(ray, hit.t), l = to_light(), v = unit(scale(-1, ray.direction));
-    if (MISTAKE == LIGHT_SIGN)
+    if (mistake == LIGHT_SIGN)
         l = scale(-1, l);
     Vector h = unit(add(v, l));
     double normal_light = dot(hit.normal, l), t;
     double highlight = pow(fmax(0, dot(hit.normal, h)), exponent);
     Vector light = times(ambient, ambient_intensity);
-    Ray shadow = {point, MISTAKE == SHADOW_RAY ? light_direction : l};
-    bool under_surface = meet_surface(shadow, &t) && (t > 0 || MISTAKE == SHADOW_LINE);
+    Ray shadow = {point, mistake == SHADOW_RAY ? light_direction : l};
+    bool under_surface = meet_surface(shadow, &t) && (t > 0 || mistake == SHADOW_LINE);
     bool in_shadow = shadows
         && (normal_light <= 0 || under_surface || is_hidden(point, hit.solid));
     if (!in_shadow) {
@@ -255,7 +257,11 @@ static void read_scene(const char *path) {
     fclose(file);
 }
 
-int main(void) {
+int main(int count, char **words) {
+    if (count > 1)
+        while (strcmp(words[1], names[mistake]) != 0)
+            if (++mistake == MISTAKE_COUNT)
+                return 2;
     char request[4096], path[4096];
     int stage, size;
     double alpha;
@@ -266,16 +272,16 @@ int main(void) {
         read_scene(path);
         for (int y = 0; y < size; y++)
             for (int x = 0; x < size; x++) {
-                Vector color = MISTAKE == TRANSPOSED ? pixel(y, x, stage, alpha, size)
-                    : MISTAKE == UPSIDE_DOWN ? pixel(x, size - 1 - y, stage, alpha, size)
-                    : MISTAKE == HALF_PIXEL_OFF ? pixel(x + 0.5, y + 0.5, stage, alpha, size)
-                    : pixel(x, y, stage, MISTAKE == DEGREES ? alpha * acos(-1) / 180 : alpha, size);
+                Vector color = mistake == TRANSPOSED ? pixel(y, x, stage, alpha, size)
+                    : mistake == UPSIDE_DOWN ? pixel(x, size - 1 - y, stage, alpha, size)
+                    : mistake == HALF_PIXEL_OFF ? pixel(x + 0.5, y + 0.5, stage, alpha, size)
+                    : pixel(x, y, stage, mistake == DEGREES ? alpha * acos(-1) / 180 : alpha, size);
                 float rgb[3] = {color.x, color.y, color.z};
-                if (MISTAKE == BGR)
+                if (mistake == BGR)
                     rgb[0] = color.z, rgb[2] = color.x;
-                for (int i = 0; i < 3 && MISTAKE == BYTES; i++)
+                for (int i = 0; i < 3 && mistake == BYTES; i++)
                     rgb[i] = 255 * rgb[i];
-                for (int i = 0; i < 3 && MISTAKE == GAMMA; i++)
+                for (int i = 0; i < 3 && mistake == GAMMA; i++)
                     rgb[i] = powf(rgb[i], 1 / 2.2f);
                 fwrite(rgb, sizeof rgb, 1, stdout);
             }
