@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 
 use firsthit::camera::frame_angle;
 use firsthit::{Kernel, Scene, Stage};
@@ -219,12 +220,30 @@ fn scalings(report: &Value) -> Vec<Scaling> {
 const CROWDS: &str = "--crowd 90,3,90 --size 16 --frames 0..1 --threads 2 --stage 5 --stage 1 \
                       --kernel listing --kernel double --kernel exact";
 
+/// A report on some crowds.
+struct CrowdReport {
+    table: String,
+    json: Value,
+    plot: String,
+}
+
+static CROWD_REPORT: LazyLock<CrowdReport> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    CrowdReport {
+        table: report(&folder, &format!("{CROWDS} --json r.json --plot p.svg")),
+        json: json(&folder, "r.json"),
+        plot: read(&folder, "p.svg"),
+    }
+});
+
 #[test]
 fn each_crowd_has_its_time_by_that_of_the_built_in_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let table = report(&folder, &format!("{CROWDS} --json r.json"));
-    let report = json(&folder, "r.json");
-    let scalings = scalings(&report);
+    let CrowdReport {
+        table,
+        json: report,
+        ..
+    } = &*CROWD_REPORT;
+    let scalings = scalings(report);
     let scenes = [("builtin", 2), ("crowd", 3), ("crowd", 90)];
     let expected = ["double", "exact"].into_iter().flat_map(|kernel| {
         let rows = scenes.map(|(scene, spheres)| (scene.to_owned(), spheres, kernel.to_owned()));
@@ -292,10 +311,7 @@ fn marks(plot: &roxmltree::Document<'_>, color: &str) -> Vec<[f64; 2]> {
 
 #[test]
 fn each_crowd_is_in_the_plot() {
-    let folder = tempfile::tempdir().unwrap();
-    report(&folder, &format!("{CROWDS} --json r.json --plot p.svg"));
-    let text = read(&folder, "p.svg");
-    let plot = roxmltree::Document::parse(&text).unwrap();
+    let plot = roxmltree::Document::parse(&CROWD_REPORT.plot).unwrap();
     for label in [
         "Time against the number of spheres",
         "built-in scene",
@@ -304,7 +320,7 @@ fn each_crowd_is_in_the_plot() {
         let is_label = |node: roxmltree::Node<'_, '_>| node.text().map(str::trim) == Some(label);
         assert!(plot.descendants().any(is_label), "{label}");
     }
-    let scalings = scalings(&json(&folder, "r.json"));
+    let scalings = scalings(&CROWD_REPORT.json);
     let mut places = Vec::new();
     for (kernel, color) in [("exact", "#0072B2"), ("double", "#009E73")] {
         let rows = scalings
@@ -466,13 +482,13 @@ fn ctrl_c_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut child = program(
         &folder,
-        "report --frames 0..20000 --json r.json --plot p.svg",
+        "report --frames 0..20000 --threads 1 --json r.json --plot p.svg",
     )
     .stdout(Stdio::null())
     .stderr(Stdio::null())
     .spawn()
     .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::thread::sleep(std::time::Duration::from_millis(200));
     assert!(child.try_wait().unwrap().is_none(), "it is measuring");
     // Of a test in the background of a shell SIGINT may be ignored, and so it is of its children:
     // SIGTERM ends them alike.
