@@ -49,7 +49,7 @@ fn capture(folder: &TempDir, through: &str, fault: &str) -> Option<Output> {
 fn what_a_driver_gets_wrong_is_never_written() {
     let folder = folder();
     for (fault, said) in FAULTS {
-        for through in backends() {
+        for &through in backends() {
             if fault == "has no eglGetProcAddress" && through != "egl" {
                 continue;
             }
@@ -92,7 +92,7 @@ fn the_next_way_is_taken_where_none_was_asked_for() {
 fn a_driver_that_never_comes_back_is_given_up() {
     let folder = folder();
     let mut throughs: Vec<_> = backends()
-        .into_iter()
+        .iter()
         .map(|way| format!(" --through {way}"))
         .collect();
     throughs.push(String::new());

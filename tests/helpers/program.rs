@@ -3,6 +3,8 @@
 use std::fmt::Display;
 use std::io::Write as _;
 use std::process::{Command, Output};
+#[cfg(target_os = "linux")]
+use std::sync::LazyLock;
 
 use firsthit::screen::{Backend, Offscreen, ScreenError};
 use tempfile::TempDir;
@@ -30,12 +32,15 @@ pub(crate) fn open(backend: Backend, size: u32) -> Option<Offscreen> {
     }
 }
 
-/// The names of the backends that are installed here.
+/// The names of the backends that are installed here. To see which takes as long as a test.
 #[cfg(target_os = "linux")]
-pub(crate) fn backends() -> Vec<&'static str> {
-    let all = [Backend::Egl, Backend::OsMesa].into_iter();
-    let installed = all.filter(|&backend| open(backend, 8).is_some());
-    installed.map(Backend::name).collect()
+pub(crate) fn backends() -> &'static [&'static str] {
+    static INSTALLED: LazyLock<Vec<&str>> = LazyLock::new(|| {
+        let all = [Backend::Egl, Backend::OsMesa].into_iter();
+        let installed = all.filter(|&backend| open(backend, 8).is_some());
+        installed.map(Backend::name).collect()
+    });
+    &INSTALLED
 }
 
 /// The names in `folder`, hidden ones too, in order.
