@@ -118,8 +118,8 @@ fn too_few_files_are_one_line() {
     let Some(xvfb) = Xvfb::lent() else {
         return;
     };
-    let mut refused = 0;
-    for files in 4..24 {
+    let (mut refused, mut served) = (0, 0);
+    for files in 4.. {
         let line = format!("ulimit -n {files}; exec \"$0\" view --exit-after-frames 1");
         let output = Command::new("sh")
             .args(["-c", &line, env!("CARGO_BIN_EXE_firsthit")])
@@ -130,6 +130,11 @@ fn too_few_files_are_one_line() {
             .unwrap();
         let message = String::from_utf8_lossy(&output.stderr);
         if output.status.success() {
+            served += 1;
+            // What is refused later than anything else was not far off.
+            if served > 3 {
+                break;
+            }
             continue;
         }
         assert_eq!(output.status.code(), Some(1), "{files}: {message}");

@@ -3,13 +3,13 @@
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use firsthit::image::display_byte;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 use super::DEADLINE;
+use super::program::pause;
 
 /// The document's glClearColor, as bytes.
 const BLUE: [u8; 3] = [0, 0, 255];
@@ -92,8 +92,7 @@ pub fn wait_to_show(shown: impl Fn() -> Option<Pixels>, expected: impl Fn(usize,
                 .map(|(shown, expected)| keep(&shown, &expected));
             panic!("this is not what the window shows: {kept:?}");
         }
-        // To read and compare a window is work.
-        thread::sleep(Duration::from_millis(30));
+        pause(start);
     }
 }
 
@@ -147,15 +146,24 @@ pub fn placed(
         (pixel < extent).then_some(texel as u32)
     };
     let columns: Vec<_> = (0..width).map(|x| texel(x, left)).collect();
-    let mut bytes = vec![BLUE; width * height];
-    for (y, pixels) in bytes.chunks_mut(width).enumerate() {
-        let Some(row) = texel(height - 1 - y, bottom) else {
-            continue;
-        };
-        for (pixel, column) in pixels.iter_mut().zip(&columns) {
-            let shown = column.and_then(|column| picture.pixel(column, row));
-            *pixel = shown.map_or(BLUE, |samples| samples.map(display_byte));
+    let shown = |row: u32, column: Option<u32>| {
+        let samples = column.and_then(|column| picture.pixel(column, row));
+        samples.map_or(BLUE, |samples| samples.map(display_byte))
+    };
+    let mut bytes = Vec::with_capacity(width * height);
+    // A row of texels is a row of pixels, many times over.
+    let (mut last, mut line) = (None, vec![BLUE; width]);
+    for y in (0..height).rev() {
+        let row = texel(y, bottom);
+        if row != last {
+            let pixels = columns.iter();
+            line = match row {
+                Some(row) => pixels.map(|&column| shown(row, column)).collect(),
+                None => vec![BLUE; width],
+            };
+            last = row;
         }
+        bytes.extend_from_slice(&line);
     }
     Pixels {
         width,

@@ -10,19 +10,23 @@ use std::time::{Duration, Instant};
 
 use super::{DEADLINE, WATCH};
 
-/// Calls `probe` until it gives something, for as long as [`DEADLINE`]: the more rarely the longer
-/// it takes, for many a probe reads a window, which is work.
+/// Calls `probe` until it gives something, for as long as [`DEADLINE`].
 pub fn wait_for<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     loop {
         if let Some(found) = probe() {
             return found;
         }
-        let waited = start.elapsed();
-        assert!(waited < DEADLINE, "waited in vain for {what}");
-        let [shortest, longest] = [5, 30].map(Duration::from_millis);
-        thread::sleep((waited / 4).clamp(shortest, longest));
+        assert!(start.elapsed() < DEADLINE, "waited in vain for {what}");
+        pause(start);
     }
+}
+
+/// Sleeps between two looks at what has been awaited since `start`: the longer the more has been
+/// waited, for many a look is one at all pixels of a window, which is work.
+pub fn pause(start: Instant) {
+    let [shortest, longest] = [5, 100].map(Duration::from_millis);
+    thread::sleep((start.elapsed() / 4).clamp(shortest, longest));
 }
 
 /// The program, running. It is killed when dropped.
