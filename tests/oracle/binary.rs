@@ -17,7 +17,7 @@ use dashu_int::IBig;
 /// The `bits` of a number that nothing rounds.
 const UNLIMITED: usize = usize::MAX;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Binary {
     significand: IBig,
     exponent: isize,
@@ -66,8 +66,7 @@ impl Binary {
 
     /// What is off by a few times 2^`error`, cut to `bits` bits.
     fn cut(significand: IBig, exponent: isize, error: Option<isize>, bits: usize) -> Binary {
-        let excess = significand.bit_len().saturating_sub(bits);
-        if excess == 0 {
+        if bits == UNLIMITED || significand.bit_len() <= bits {
             return Binary {
                 significand,
                 exponent,
@@ -75,6 +74,7 @@ impl Binary {
                 bits,
             };
         }
+        let excess = significand.bit_len() - bits;
         let exponent = exponent + excess as isize;
         let is_exact = significand.trailing_zeros() >= Some(excess);
         Binary {
@@ -217,8 +217,10 @@ impl Add for &Binary {
         } else {
             (other, self)
         };
-        let places = (coarse.exponent - fine.exponent) as usize;
-        let sum = &fine.significand + (&coarse.significand << places);
+        let sum = match (coarse.exponent - fine.exponent) as usize {
+            0 => &fine.significand + &coarse.significand,
+            places => &fine.significand + (&coarse.significand << places),
+        };
         Binary::cut(sum, fine.exponent, error, bits)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
 
 use super::binary::Binary;
 
@@ -17,7 +18,7 @@ pub(crate) struct Number {
 #[derive(Clone, Debug)]
 struct Root {
     q: Binary,
-    c: Binary,
+    c: Arc<Binary>,
 }
 
 impl Root {
@@ -29,7 +30,7 @@ impl Root {
     }
 
     fn squared(&self) -> Binary {
-        &(&self.q * &self.q) * &self.c
+        &(&self.q * &self.q) * &*self.c
     }
 
     fn times(&self, factor: &Binary) -> Root {
@@ -86,7 +87,7 @@ impl Number {
     pub(crate) fn root(&self) -> Number {
         let c = self.plain();
         if c.is_exact() {
-            let (q, c) = (Binary::exact(1.0), c.clone());
+            let (q, c) = (Binary::exact(1.0), Arc::new(c.clone()));
             Number::new(Binary::ZERO, Some(Root { q, c }))
         } else {
             Number::new(c.root(), None)
@@ -128,7 +129,7 @@ impl Number {
             let rest = &(&(&p * &p) - &x_squared) - &y_squared;
             let product = Root {
                 q: &(&Binary::exact(2.0) * &one.q) * &two.q,
-                c: &one.c * &two.c,
+                c: Arc::new(&*one.c * &*two.c),
             };
             Number::new(rest, Some(product)).sign()
         });
@@ -184,7 +185,7 @@ impl Mul for &Number {
                     q: &(&self.p * &two.q) + &(&one.q * &other.p),
                     c: one.c.clone(),
                 };
-                Number::new(&p + &(&(&one.q * &two.q) * &one.c), Some(root))
+                Number::new(&p + &(&(&one.q * &two.q) * &*one.c), Some(root))
             }
         }
     }
