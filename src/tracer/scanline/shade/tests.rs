@@ -1,9 +1,12 @@
 //! The certified shader alone, against the pixels' own definition.
 
+use std::cell::OnceCell;
+
 use fearless_simd::{Level, dispatch};
 
 use crate::stage::Stage;
 use crate::tracer::decision::Decision;
+use crate::tracer::pixel::Pixel;
 use crate::tracer::scanline::RowTracer;
 use crate::tracer::scanline::prepare::solids::Appearance;
 use crate::tracer::scanline::shade::columns::SphereCache;
@@ -25,9 +28,10 @@ struct Counts {
 
 /// Shades all of a sphere, hidden or not, by its columns or pixel by pixel: each row with all
 /// casters, and with those that may cast a shadow on the row's box. Certain samples are compared
-/// with those of pixels that show the sphere.
+/// with those of pixels that show the sphere. `pixels` keeps what each pixel shows.
 fn check(
     tracer: &RowTracer<'_>,
+    pixels: &[OnceCell<Pixel>],
     shaded: &ShadedSphere<'_>,
     by_columns: bool,
     (level, name): (Level, &str),
@@ -80,7 +84,8 @@ fn check(
         dispatch!(level, simd => shade::<_, Certified>(simd, shaded, &mut run));
         assert!(samples[3 * count..].iter().all(|&sample| sample == 2.0));
         for (column, (samples, decided)) in (from..).zip(samples.chunks(3).zip(decisions)) {
-            let ((decision, color), _) = tracer.pixels.pixel(column, row);
+            let pixel = || tracer.pixels.pixel(column, row).0;
+            let (decision, color) = *pixels[(row * SIZE + column) as usize].get_or_init(pixel);
             if lit(decision) != shaded.in_light {
                 continue;
             }
@@ -100,37 +105,40 @@ fn check(
 
 #[test]
 fn what_is_certain_is_what_pixels_are_defined_to_show() {
-    for level in [Level::baseline(), Level::new()] {
-        let mut counts = <[Counts; 2]>::default();
-        each_frame(SIZE, |name, tracer| {
-            for mirrored in [false, true] {
-                let solids = tracer.frame.solids(mirrored);
-                if solids.mirrored != mirrored {
+    let levels = [Level::baseline(), Level::new()];
+    let mut counts = <[[Counts; 2]; 2]>::default();
+    each_frame(SIZE, |name, tracer| {
+        let pixels = vec![OnceCell::new(); (SIZE * SIZE) as usize];
+        for mirrored in [false, true] {
+            let solids = tracer.frame.solids(mirrored);
+            if solids.mirrored != mirrored {
+                continue;
+            }
+            for appearance in solids.appearance {
+                let Appearance::Sphere(shaded) = appearance else {
                     continue;
-                }
-                for appearance in solids.appearance {
-                    if let Appearance::Sphere(shaded) = appearance {
-                        for by_columns in [true, false] {
-                            let counts = &mut counts[usize::from(by_columns)];
-                            check(tracer, shaded, by_columns, (level, name), counts);
-                        }
+                };
+                for (level, counts) in levels.into_iter().zip(&mut counts) {
+                    for by_columns in [true, false] {
+                        let counts = &mut counts[usize::from(by_columns)];
+                        check(tracer, &pixels, shaded, by_columns, (level, name), counts);
                     }
                 }
             }
-        });
-        // A shader that is certain of nothing would pass, too.
-        for Counts {
-            certain,
-            in_doubt,
-            missing,
-        } in counts
-        {
-            assert!(
-                certain > 1000 && in_doubt < certain / 50,
-                "{certain}, {in_doubt}"
-            );
-            assert!(missing > 1000, "{missing}");
         }
+    });
+    // A shader that is certain of nothing would pass, too.
+    for Counts {
+        certain,
+        in_doubt,
+        missing,
+    } in counts.into_iter().flatten()
+    {
+        assert!(
+            certain > 1000 && in_doubt < certain / 50,
+            "{certain}, {in_doubt}"
+        );
+        assert!(missing > 1000, "{missing}");
     }
 }
 
@@ -142,9 +150,11 @@ fn a_channel_that_a_sphere_does_not_have_is_certain() {
         let frame = (Stage::Shadow, 0.3, SIZE);
         let mut counts = Counts::default();
         with_tracer(&scene, frame, NOT_CROWDED, |tracer| {
+            let pixels = vec![OnceCell::new(); (SIZE * SIZE) as usize];
             for appearance in tracer.frame.solids(false).appearance {
                 if let Appearance::Sphere(shaded) = appearance {
-                    check(tracer, shaded, true, (Level::new(), color), &mut counts);
+                    let level = (Level::new(), color);
+                    check(tracer, &pixels, shaded, true, level, &mut counts);
                 }
             }
         });
