@@ -1,6 +1,7 @@
 //! Promise: every stage shows what the picture's definition says, pixel by pixel.
 
 use firsthit::camera::{ROUND, frame_angle};
+use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
 use crate::helpers::{bits, on_all_cores, trace, trace_with_decisions};
@@ -9,13 +10,23 @@ use crate::oracle::Oracle;
 /// The kernels that promise to be right, and double, which these scenes are not hard enough for.
 const KERNELS: [Kernel; 3] = [Kernel::Exact, Kernel::Reference, Kernel::Double];
 
+/// A kernel, and what it traced and decided.
+type Frame = (Kernel, (Image, Vec<Decision>));
+
 /// Traces a frame of each of some stages with each kernel and compares every pixel's decision and
-/// every sample with the oracle's.
-fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64, size: u32) {
+/// every sample with the oracle's. Returns the frames.
+fn compare<const COUNT: usize>(
+    scene: &Scene,
+    stages: [Stage; COUNT],
+    alpha: f64,
+    size: u32,
+) -> [[Frame; KERNELS.len()]; COUNT] {
     let frames = stages.map(|stage| {
         KERNELS.map(|kernel| {
-            let (image, decisions) = trace_with_decisions(kernel, scene, stage, alpha, size);
-            (kernel, image, decisions)
+            (
+                kernel,
+                trace_with_decisions(kernel, scene, stage, alpha, size),
+            )
         })
     });
     let oracle = Oracle::new(scene, alpha, size, 256);
@@ -23,7 +34,7 @@ fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64
         let expected = oracle.pixel_in_stages(stages, column, row);
         let each_stage = stages.into_iter().zip(&frames).zip(expected);
         let wrong = each_stage.flat_map(|((stage, frames), (decision, color))| {
-            let wrong = frames.iter().filter_map(move |(kernel, image, decisions)| {
+            let wrong = frames.iter().filter_map(move |(kernel, (image, decisions))| {
                 let decided = decisions[(row * size + column) as usize];
                 let got = image.pixel(column, row).unwrap();
                 let same = decided == decision && got.map(f32::to_bits) == color.map(f32::to_bits);
@@ -49,16 +60,17 @@ fn compare<const COUNT: usize>(scene: &Scene, stages: [Stage; COUNT], alpha: f64
         wrong.len(),
         wrong[0]
     );
+    frames
 }
 
 /// The same in every stage.
 fn compare_all(scene: &Scene, alpha: f64, size: u32) {
     // The animation is the reflection at one angle after another, and that is compared.
     let [stages @ .., _] = Stage::ALL;
-    compare(scene, stages, alpha, size);
-    for kernel in KERNELS {
-        let frame = |stage| trace_with_decisions(kernel, scene, stage, alpha, size);
-        let [reflection, animation] = [Stage::Reflection, Stage::Animation].map(frame);
+    assert_eq!(stages.last(), Some(&Stage::Reflection));
+    let [.., reflections] = compare(scene, stages, alpha, size);
+    for (kernel, reflection) in reflections {
+        let animation = trace_with_decisions(kernel, scene, Stage::Animation, alpha, size);
         let same = bits(&animation.0) == bits(&reflection.0) && animation.1 == reflection.1;
         assert!(same, "{}, α = {alpha}, N = {size}", kernel.name());
     }
