@@ -69,6 +69,12 @@ pub(crate) fn bits(image: &Raster) -> Vec<u32> {
     image.samples().iter().map(|s| s.to_bits()).collect()
 }
 
+/// Whether two pictures have the same samples, bit for bit. It copies neither.
+pub(crate) fn same_bits(one: &Raster, other: &Raster) -> bool {
+    let [one, other] = [one, other].map(|image| image.samples().iter().map(|s| s.to_bits()));
+    one.eq(other)
+}
+
 /// The samples of an EXR file as bits, in the order of [`Raster::samples`].
 pub(crate) fn exr_bits(path: &Path) -> Vec<u32> {
     let file = read_all_flat_layers_from_file(path).unwrap();

@@ -5,7 +5,7 @@ use firsthit::camera::{ROUND, frame_angle};
 use firsthit::tracer::{Decision, Simd};
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
-use crate::helpers::{Random, bits, hard_scene, hard_scenes, trace, trace_with_decisions};
+use crate::helpers::{Random, hard_scene, hard_scenes, same_bits, trace, trace_with_decisions};
 
 const SIZE: u32 = 125;
 
@@ -84,13 +84,12 @@ fn any_number_of_threads() {
         for (stage, frame, _) in TRUE_PICTURES {
             let alpha = frame_angle(frame);
             let (expected, decisions) = trace_with_decisions(kernel, &scene, stage, alpha, SIZE);
-            let expected = bits(&expected);
             for (threads, (tracer, retained)) in (1..).zip(tracers.iter_mut().zip(&mut retained)) {
                 tracer.retrace(&scene, stage, alpha, retained).unwrap();
                 tracer.trace(&scene, stage, alpha, &mut whole).unwrap();
-                let same = bits(retained) == expected && bits(&whole) == expected;
+                let same = same_bits(retained, &expected) && same_bits(&whole, &expected);
                 let decided = tracer.trace_with_decisions(&scene, stage, alpha, &mut whole);
-                let same = same && bits(&whole) == expected && decided.unwrap() == decisions;
+                let same = same && same_bits(&whole, &expected) && decided.unwrap() == decisions;
                 let kernel = kernel.name();
                 assert!(
                     same,
@@ -194,7 +193,7 @@ fn what_is_traced_over_another_frame_is_what_is_traced_whole() {
             .retrace(scene, stage, alpha, &mut retained[size])
             .unwrap();
         tracer.trace(scene, stage, alpha, &mut whole[size]).unwrap();
-        let same = bits(&retained[size]) == bits(&whole[size]);
+        let same = same_bits(&retained[size], &whole[size]);
         assert!(same, "step {step}");
     }
 }
@@ -216,8 +215,7 @@ fn a_picture_too_large_for_caches_has_the_same_bytes() {
                     .trace(&scene, Stage::Reflection, alpha, image)
                     .unwrap();
             }
-            let expected = bits(retained);
-            let same = bits(whole) == expected && bits(shared) == expected;
+            let same = same_bits(whole, retained) && same_bits(shared, retained);
             assert!(same, "{size}");
         }
     }

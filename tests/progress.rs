@@ -24,19 +24,19 @@ fn crowd(spheres: usize) -> Scene {
 #[test]
 fn a_cancelled_frame_ends_and_the_next_one_is_whole() {
     let scene = crowd(60);
+    // Enough to be in the middle of it when it is cancelled.
+    let mut images = [600, 4000].map(|size| Image::new(size).unwrap());
     for kernel in Kernel::ALL {
         let scene = match kernel {
             Kernel::Listing => Scene::builtin(),
             _ => scene.clone(),
         };
-        // Enough to be in the middle of it when it is cancelled.
-        let size = match kernel {
-            Kernel::Reference | Kernel::Listing => 600,
-            _ => 4000,
+        let image = match kernel {
+            Kernel::Reference | Kernel::Listing => &mut images[0],
+            _ => &mut images[1],
         };
         for threads in [1, 3] {
             let mut tracer = Tracer::new(kernel, threads).unwrap();
-            let mut image = Image::new(size).unwrap();
             let progress = tracer.progress();
             let cancelled = thread::scope(|scope| {
                 scope.spawn(|| {
@@ -45,13 +45,13 @@ fn a_cancelled_frame_ends_and_the_next_one_is_whole() {
                     }
                     progress.cancel();
                 });
-                tracer.retrace(&scene, Stage::Reflection, 0.3, &mut image)
+                tracer.retrace(&scene, Stage::Reflection, 0.3, image)
             });
             assert!(
                 matches!(cancelled, Err(TraceError::Cancelled)),
                 "{kernel:?}: {cancelled:?}"
             );
-            assert!(progress.rows() < size, "{kernel:?}");
+            assert!(progress.rows() < image.size(), "{kernel:?}");
             // What the image shows is not taken for a frame.
             let mut image = Image::new(50).unwrap();
             tracer

@@ -4,7 +4,7 @@ use firsthit::camera::{ROUND, frame_angle};
 use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
-use crate::helpers::{bits, on_all_cores, trace, trace_with_decisions};
+use crate::helpers::{on_all_cores, same_bits, trace, trace_with_decisions};
 use crate::oracle::Oracle;
 
 /// The kernels that promise to be right, and double, which these scenes are not hard enough for.
@@ -71,7 +71,7 @@ fn compare_all(scene: &Scene, alpha: f64, size: u32) {
     let [.., reflections] = compare(scene, stages, alpha, size);
     for (kernel, reflection) in reflections {
         let animation = trace_with_decisions(kernel, scene, Stage::Animation, alpha, size);
-        let same = bits(&animation.0) == bits(&reflection.0) && animation.1 == reflection.1;
+        let same = same_bits(&animation.0, &reflection.0) && animation.1 == reflection.1;
         assert!(same, "{}, α = {alpha}, N = {size}", kernel.name());
     }
 }

@@ -6,7 +6,7 @@ mod lattice;
 use firsthit::tracer::{Decision, Seen};
 use firsthit::{Kernel, Scene, Stage};
 
-use crate::helpers::{bits, trace_with_decisions};
+use crate::helpers::{same_bits, trace_with_decisions};
 use crate::oracle::Oracle;
 use lattice::{
     AXIS, FLIPS, HEIGHT, Place, SIZE, Turn, corners, faces_eye, mirrored, plus, sample, scene,
@@ -23,7 +23,7 @@ fn compare(
 ) -> Vec<Decision> {
     let trace = |kernel| trace_with_decisions(kernel, scene, stage, 0.0, size);
     let [(image, decisions), other] = [Kernel::Exact, Kernel::Reference].map(trace);
-    let agree = bits(&image) == bits(&other.0) && decisions == other.1;
+    let agree = same_bits(&image, &other.0) && decisions == other.1;
     assert!(agree, "exact and reference differ in stage {stage}");
     let oracle = Oracle::new(scene, 0.0, size, 256);
     for (column, row) in pixels {
