@@ -67,11 +67,14 @@ fn x11_serves_where_wayland_is_named_but_not_there() {
 }
 
 /// An X server on which OpenGL goes another way: EGL instead of GLX.
-const WITHOUT_GLX: [&str; 2] = ["-extension", "GLX"];
+const WITHOUT_GLX: &[&str] = &["-extension", "GLX"];
+
+/// One of either kind.
+const SERVERS: [&[&str]; 2] = [&[], WITHOUT_GLX];
 
 #[test]
 fn egl_serves_where_the_server_has_no_glx() {
-    let Some(xvfb) = Xvfb::start(&WITHOUT_GLX) else {
+    let Some(xvfb) = Xvfb::lent_with(WITHOUT_GLX) else {
         return;
     };
     let session = Session::on(xvfb, &["view", "--stage", "6", "--size", "120"], &[]);
@@ -84,7 +87,7 @@ fn egl_serves_where_the_server_has_no_glx() {
 
 #[test]
 fn the_death_of_the_server_is_one_line() {
-    for server in [&[][..], &WITHOUT_GLX] {
+    for server in SERVERS {
         for stage in ["6", "7"] {
             let Some(xvfb) = Xvfb::start(server) else {
                 return;
@@ -153,8 +156,8 @@ fn a_driver_that_has_no_version_is_one_line() {
     let Some(environment) = fault::environment("has no version") else {
         return;
     };
-    for server in [&[][..], &WITHOUT_GLX] {
-        let Some(xvfb) = Xvfb::start(server) else {
+    for server in SERVERS {
+        let Some(xvfb) = Xvfb::lent_with(server) else {
             return;
         };
         let [library, fault] = environment;
@@ -170,8 +173,8 @@ fn a_window_that_shows_a_wrong_pixel_is_told() {
     let Some(environment) = fault::environment("shows a wrong pixel") else {
         return;
     };
-    for server in [&[][..], &WITHOUT_GLX] {
-        let Some(xvfb) = Xvfb::start(server) else {
+    for server in SERVERS {
+        let Some(xvfb) = Xvfb::lent_with(server) else {
             return;
         };
         // It is looked at when some frames have been presented.

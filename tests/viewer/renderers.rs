@@ -16,28 +16,35 @@ use super::xvfb::Xvfb;
 
 const SIZE: u32 = 300;
 
-/// A program that answers with pictures of one grey, each after some seconds.
-fn flat(grey: f64, seconds: f64) -> String {
+/// A program that answers with pictures of one grey, each after some seconds, and then does what
+/// `after` says.
+fn flat_and(grey: f32, seconds: f64, after: &str) -> String {
+    let bytes = 4 * 3 * SIZE * SIZE;
+    let octal = grey.to_le_bytes().map(|byte| format!("\\{byte:03o}"));
+    let octal = octal.concat();
     format!(
-        "import json, struct, sys, time\n\
-         for line in sys.stdin:\n    \
-             samples = 3 * json.loads(line)['size'] ** 2\n    \
-             time.sleep({seconds})\n    \
-             sys.stdout.buffer.write(struct.pack('<f', {grey}) * samples)\n    \
-             sys.stdout.buffer.flush()\n"
+        "while read line; do\n    \
+             sleep {seconds}\n    \
+             yes abcd | tr -d '\\n' | head -c {bytes} | tr abcd '{octal}'\n    \
+             {after}\n\
+         done; exit\n"
     )
 }
 
-/// The viewer with a Python program of this text, and its path.
+fn flat(grey: f32, seconds: f64) -> String {
+    flat_and(grey, seconds, ":")
+}
+
+/// The viewer with a shell's program of this text, which starts in no time, and its path.
 fn view(text: &str, arguments: &[&str]) -> Option<(Session, std::path::PathBuf)> {
     let xvfb = Xvfb::lent()?;
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!(
-        "flat-{}-{:?}.py",
+        "flat-{}-{:?}.sh",
         std::process::id(),
         thread::current().id()
     ));
     fs::write(&path, text).unwrap();
-    let command = format!("python3 '{}'", path.display());
+    let command = format!("sh '{}'", path.display());
     let all = ["view", "--size", "300", "--program", &command];
     let session = Session::on(xvfb, &[&all, arguments].concat(), &[]);
     Some((session, path))
@@ -60,7 +67,7 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     let Some((mut session, path)) = view(&flat(0.5, 0.0), &["--stage", "6"]) else {
         return;
     };
-    session.titled(&["firsthit — 6 Reflection — python3 flat-"]);
+    session.titled(&["firsthit — 6 Reflection — sh flat-"]);
     shows_grey(&session, 0.5);
     session.type_keys("k");
     session.titled(&["— exact —"]);
@@ -68,12 +75,12 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     for _ in Kernel::ALL {
         session.type_keys("k");
     }
-    session.titled(&["— python3 flat-"]);
+    session.titled(&["— sh flat-"]);
     shows_grey(&session, 0.5);
     fs::write(&path, flat(0.25, 0.0)).unwrap();
     shows_grey(&session, 0.25);
     // One that fails leaves the last picture, and says why, until it is mended.
-    fs::write(&path, "raise SystemExit(3)").unwrap();
+    fs::write(&path, "exit 3").unwrap();
     thread::sleep(WATCH);
     shows_grey(&session, 0.25);
     session.screenshot("viewer-failed-program.png");
@@ -88,7 +95,7 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     let [line] = lines[..] else {
         panic!("{errors}");
     };
-    assert!(line.starts_with("firsthit: python3 flat-"), "{line}");
+    assert!(line.starts_with("firsthit: sh flat-"), "{line}");
     assert!(line.contains("ended with status 3"), "{line}");
 }
 
@@ -98,7 +105,7 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
         return;
     };
     session.titled(&[" fps"]);
-    fs::write(&path, "raise SystemExit(3)").unwrap();
+    fs::write(&path, "exit 3").unwrap();
     session.titled(&["paused"]);
     fs::write(&path, flat(0.75, 0.0)).unwrap();
     session.titled(&[" fps"]);
@@ -106,7 +113,7 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
     // One that a key has paused stays so.
     session.press(SPACE);
     session.titled(&["paused"]);
-    fs::write(&path, "raise SystemExit(4)").unwrap();
+    fs::write(&path, "exit 4").unwrap();
     wait_for("a note", || {
         let shown = session.pixels()?;
         let [bottom, width] = [shown.height - 20, shown.width];
@@ -125,7 +132,7 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
 
 #[test]
 fn what_a_program_writes_after_its_picture_is_told_though_nothing_else_is_asked_for() {
-    let text = flat(0.5, 0.0) + "    time.sleep(0.1)\n    print('done', flush=True)\n";
+    let text = flat_and(0.5, 0.0, "sleep 0.1; echo done");
     let Some((mut session, _)) = view(&text, &["--stage", "6"]) else {
         return;
     };
@@ -157,7 +164,7 @@ fn what_a_program_writes_after_its_picture_is_told_though_nothing_else_is_asked_
 
 #[test]
 fn a_program_that_fails_from_the_start_is_shown_once_it_is_mended() {
-    let Some((mut session, path)) = view("print('hello')", &["--stage", "2"]) else {
+    let Some((mut session, path)) = view("echo hello", &["--stage", "2"]) else {
         return;
     };
     shows_grey(&session, 0.0);
@@ -184,10 +191,10 @@ fn a_slow_program_keeps_nobody_waiting() {
         session.type_keys("k");
     }
     // Title and stage change at once, although the last kernel's picture is all that there is.
-    session.titled(&["6 Reflection — python3"]);
+    session.titled(&["6 Reflection — sh"]);
     let start = Instant::now();
     session.type_keys("5");
-    session.titled(&["5 Shadow — python3"]);
+    session.titled(&["5 Shadow — sh"]);
     session.type_keys("k");
     session.titled(&["5 Shadow — exact"]);
     session.shows(SIZE, Stage::Shadow, 0.0);
@@ -197,11 +204,11 @@ fn a_slow_program_keeps_nobody_waiting() {
         session.type_keys("k");
     }
     // The picture of the stage that was left is not shown, or for no longer than the note.
-    session.titled(&["5 Shadow — python3"]);
+    session.titled(&["5 Shadow — sh"]);
     shows_grey(&session, 0.5);
     // It is left at once, too.
     session.type_keys("4");
-    session.titled(&["4 Shading — python3"]);
+    session.titled(&["4 Shading — sh"]);
     let start = Instant::now();
     session.type_keys("q");
     session.program.left();
@@ -377,7 +384,7 @@ fn a_changed_scene_file_is_shown_and_a_refused_one_leaves_the_last_scene() {
 
 #[test]
 fn a_program_that_never_answers_keeps_what_mends_it_waiting_for_nothing() {
-    let silent = "import time; time.sleep(1000)";
+    let silent = "exec sleep 1000";
     let Some((mut session, path)) = view(silent, &["--stage", "2"]) else {
         return;
     };

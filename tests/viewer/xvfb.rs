@@ -17,7 +17,8 @@ pub struct Xvfb {
     server: Option<Server>,
     /// As DISPLAY names it.
     pub display: String,
-    is_lent: bool,
+    /// What it was started with, if it is lent.
+    lent: Option<&'static [&'static str]>,
 }
 
 /// Xvfbs that tests lend one another: a start takes as much processor time as some tests.
@@ -29,35 +30,45 @@ static LENDING: Mutex<Lending> = Mutex::new(Lending {
 struct Lending {
     /// How many Xvfbs tests have, also such as are not lent.
     used: usize,
-    /// They end when no test has an Xvfb, since the end of the test program drops nothing.
-    idle: Vec<Server>,
+    /// With what they were started with. They end when no test has an Xvfb, since the end of the
+    /// test program drops nothing.
+    idle: Vec<(&'static [&'static str], Server)>,
 }
 
 impl Xvfb {
     /// Starts one with a screen of 1280 × 1024 pixels and further `arguments`. `None`, and a line
     /// on standard error, where there is no Xvfb; where CI is set there must be one.
     pub fn start(arguments: &[&str]) -> Option<Xvfb> {
-        Some(Xvfb::new(Server::start(arguments)?, false))
+        Some(Xvfb::new(Server::start(arguments)?, None))
     }
 
     /// One without further arguments, for a test that leaves nothing on it: another test may have
     /// had it before.
     pub fn lent() -> Option<Xvfb> {
-        let idle = LENDING.lock().unwrap().idle.pop();
-        let server = match idle {
-            Some(server) => server,
-            None => Server::start(&[])?,
-        };
-        server.clear();
-        Some(Xvfb::new(server, true))
+        Xvfb::lent_with(&[])
     }
 
-    fn new(server: Server, is_lent: bool) -> Xvfb {
+    /// The same with further `arguments`.
+    pub fn lent_with(arguments: &'static [&'static str]) -> Option<Xvfb> {
+        let idle = {
+            let idle = &mut LENDING.lock().unwrap().idle;
+            let place = idle.iter().position(|(given, _)| *given == arguments);
+            place.map(|place| idle.swap_remove(place).1)
+        };
+        let server = match idle {
+            Some(server) => server,
+            None => Server::start(arguments)?,
+        };
+        server.clear();
+        Some(Xvfb::new(server, Some(arguments)))
+    }
+
+    fn new(server: Server, lent: Option<&'static [&'static str]>) -> Xvfb {
         LENDING.lock().unwrap().used += 1;
         Xvfb {
             display: server.display.clone(),
             server: Some(server),
-            is_lent,
+            lent,
         }
     }
 
@@ -72,8 +83,12 @@ impl Drop for Xvfb {
         let mut lending = LENDING.lock().unwrap();
         lending.used -= 1;
         // A test that fails may leave keys pressed.
-        if self.is_lent && !thread::panicking() {
-            lending.idle.extend(self.server.take());
+        if let Some(arguments) = self.lent
+            && !thread::panicking()
+        {
+            lending
+                .idle
+                .extend(self.server.take().map(|server| (arguments, server)));
         }
         if lending.used == 0 {
             lending.idle.clear();
