@@ -421,8 +421,8 @@ fn its_standard_error_passes_line_by_line() {
 fn a_gigabyte_takes_no_memory() {
     for script in [
         "read line; head -c 1000000000 /dev/zero",
-        // In memory that grows by doubling it would take 32 MiB. The program itself takes 28.
-        "read line; head -c 20000000 /dev/zero | tr '\\000' x >&2; exit 3",
+        // In memory that grows by doubling it would take 64 MiB. The program itself takes 28.
+        "read line; head -c 40000000 /dev/zero | tr '\\000' x >&2; exit 3",
     ] {
         let folder = folder(script);
         let mut capture = capture(&folder, "sh p.sh", "60");
@@ -430,7 +430,7 @@ fn a_gigabyte_takes_no_memory() {
         let mut limited = Command::new("sh");
         limited
             .current_dir(&folder)
-            .args(["-c", r#"ulimit -v 50000; exec "$0" "$@""#])
+            .args(["-c", r#"ulimit -v 75000; exec "$0" "$@""#])
             .arg(capture.get_program())
             .args(capture.get_args());
         let output = limited.stderr(Stdio::piped()).output().unwrap();
