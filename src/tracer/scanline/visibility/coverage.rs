@@ -9,9 +9,9 @@ use crate::tracer::scanline::edges::table::{Receiver, RegionKind, RegionKinds, S
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) enum Cover {
     #[default]
-    Not,
-    Certainly,
-    Possibly,
+    Not = 0,
+    Certainly = 1,
+    Possibly = 2,
 }
 
 impl Cover {
@@ -32,25 +32,31 @@ struct Crossing {
     to: Cover,
 }
 
-/// How many regions of one kind cover the column.
+/// How many regions of one kind cover the column: the lower half of the word counts those that
+/// certainly do, the upper half those that possibly do.
 #[derive(Clone, Copy, Default)]
-struct CoverCount {
-    certain: u32,
-    /// How many more may cover it.
-    possible: u32,
-}
+struct CoverCount(u64);
 
 impl CoverCount {
     fn cross(&mut self, Crossing { from, to }: Crossing) {
         // No processor predicts the order of edges, so this has no branches.
-        let change = |cover: Cover| u32::from(to == cover).wrapping_sub(u32::from(from == cover));
-        self.certain = self.certain.wrapping_add(change(Cover::Certainly));
-        self.possible = self.possible.wrapping_add(change(Cover::Possibly));
+        const ONE: [u64; 3] = [0, 1, 1 << 32];
+        let changed = self.0.wrapping_add(ONE[to as usize]);
+        self.0 = changed.wrapping_sub(ONE[from as usize]);
+    }
+
+    fn certain(self) -> u32 {
+        self.0 as u32
+    }
+
+    fn possible(self) -> u32 {
+        (self.0 >> 32) as u32
     }
 
     /// Whether any of the regions covers the column; `None` where that is in doubt.
     fn any(self) -> Option<bool> {
-        (self.certain > 0 || self.possible == 0).then_some(self.certain > 0)
+        let any = self.certain() > 0;
+        (any || self.possible() == 0).then_some(any)
     }
 }
 
@@ -65,7 +71,7 @@ pub(crate) struct CoveringSolids {
 impl CoveringSolids {
     /// The solids in any order, if none is in doubt.
     pub(crate) fn certain(&self) -> Option<&[SolidIndex]> {
-        (self.count.possible == 0).then_some(&self.solids)
+        (self.count.possible() == 0).then_some(&self.solids)
     }
 
     fn clear(&mut self) {
