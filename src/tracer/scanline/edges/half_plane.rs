@@ -125,7 +125,7 @@ impl Border {
         borders
     }
 
-    /// Whether f64 does not tell that the border slopes.
+    /// Whether the border is level, as far as f64 tells.
     fn is_level(&self) -> bool {
         self.doubt < 0.0
     }

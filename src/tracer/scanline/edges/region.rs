@@ -226,8 +226,8 @@ impl<'f> Region<'f> {
         }
     }
 
-    /// Whether the columns in the row at Y lie beside a half-plane, as both ends then do. A search
-    /// from them would go through all.
+    /// Whether both ends of some columns in the row at Y lie beside one half-plane, and so all of
+    /// them. A search from the ends would go through all.
     fn misses(&self, (from, to): (u32, u32), y: f64, grid: Grid) -> bool {
         let ends = [from, to - 1].map(|column| grid.coordinate(column));
         self.all_half_planes().any(|half_plane| {

@@ -58,7 +58,7 @@ pub(crate) struct SplitFaces<'f> {
 /// What is kept of the regions of late faces.
 pub(super) enum Kept<'f> {
     Regions(&'f [KeptRegion<'f>]),
-    /// The edges in the rows of a band, which begins at any row.
+    /// The edges in the rows of a band, which may begin at any row.
     Edges {
         first: u32,
         band: BandEdges<'f>,
@@ -83,7 +83,7 @@ pub(super) enum KeptRegion<'f> {
     Whole(&'f Region<'f>),
     /// The shadow of a tetrahedron, clipped to the outline of the solid.
     Shadow {
-        /// Their borders, if there was memory for them.
+        /// The borders of its half-planes, if there was memory for them.
         half_planes: Option<&'f [Border]>,
         cast: Cast,
         /// The rows in which the shadow may have pixels.
