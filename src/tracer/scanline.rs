@@ -32,8 +32,8 @@
 //!   region: `shade/` computes it.
 //! - `active.rs` keeps the edges of a row in order, and what its gaps show, for the next row, where
 //!   mostly nothing but the columns of the edges has changed.
-//! - `row_edges.rs` sorts, band by band, edges whose order no row keeps for the next: those of the
-//!   following two.
+//! - `row_edges.rs` sorts, band by band and all rows at once (`sort.rs`), edges whose order no row
+//!   keeps for the next: those of the following two.
 //! - `low.rs` lays the regions of few rows over those gaps: a crowd of them would leave nothing in
 //!   order from one row to the next.
 //! - `faces.rs` divides what a row shows of a tetrahedron on which many shadows may fall: its
@@ -85,6 +85,7 @@ mod low;
 mod prepare;
 mod row_edges;
 mod shade;
+mod sort;
 #[cfg(test)]
 mod tests;
 mod visibility;

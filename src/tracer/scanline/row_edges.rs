@@ -2,7 +2,6 @@
 //! from one row to the next.
 
 use bumpalo_herd::Member;
-use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::image::MAX_SIZE;
@@ -10,6 +9,7 @@ use crate::tracer::scanline::active::Edge;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::table::Regions;
 use crate::tracer::scanline::grid::{Grid, ROWS};
+use crate::tracer::scanline::sort::{BLOCK, sort_rows};
 
 /// An edge of a region after its column in a row, in one number: of two edges, that with the
 /// smaller number comes first.
@@ -164,6 +164,10 @@ impl RowEdges {
         for end in ends {
             self.used = self.used.max(end);
         }
+        self.used = begin + (self.used - begin).next_multiple_of(BLOCK);
+        if self.edges.len() < self.used {
+            self.edges.resize(self.used, [0.0; ROWS]);
+        }
         for (row, &end) in ends.iter().enumerate() {
             for edges in &mut self.edges[end..self.used] {
                 edges[row] = EdgeAt::NONE.0;
@@ -263,43 +267,6 @@ fn push(edges: &mut [[f64; ROWS]], ends: &mut [usize; ROWS], region: u32, band: 
             edges[ends[row]][row] = edge(kind as u32, columns[kind]);
             ends[row] += 1;
         }
-    }
-}
-
-/// Sorts the edges of each row: Batcher's merge exchange, Algorithm M in section 5.2.2 of Knuth's
-/// The Art of Computer Programming. Which edges it compares depends on nothing but their number: so
-/// it has no branches that no processor predicts, and sorts all rows at once.
-#[inline(always)]
-fn sort_rows<S: Simd>(simd: S, edges: &mut [[f64; ROWS]]) {
-    let count = edges.len();
-    let half = count.next_power_of_two() / 2;
-    let mut length = half;
-    while length > 0 {
-        let (mut from, mut distance, mut next) = (0, length, half);
-        loop {
-            for first in (from..count.saturating_sub(distance)).step_by(2 * length) {
-                let (left, right) = edges[first..].split_at_mut(distance);
-                for (left, right) in left.iter_mut().take(length).zip(right) {
-                    exchange(simd, left, right);
-                }
-            }
-            if next == length {
-                break;
-            }
-            (from, distance, next) = (length, next - length, next / 2);
-        }
-        length /= 2;
-    }
-}
-
-/// Exchanges the numbers of those rows in which they are out of order.
-#[inline(always)]
-fn exchange<S: Simd>(simd: S, left: &mut [f64; ROWS], right: &mut [f64; ROWS]) {
-    let pairs = left.chunks_exact_mut(S::f64s::LEN);
-    for (left, right) in pairs.zip(right.chunks_exact_mut(S::f64s::LEN)) {
-        let [a, b] = [&*left, &*right].map(|numbers| S::f64s::from_slice(simd, numbers));
-        a.min(b).store_slice(left);
-        a.max(b).store_slice(right);
     }
 }
 
