@@ -1,7 +1,7 @@
 //! Columns and rows of pixels, and their coordinates X and Y on the screen.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, SimdFloatElement};
+use fearless_simd::{Simd, SimdFloatElement, f32x8};
 
 use crate::image::MAX_SIZE;
 use crate::tracer::view_space::{self, PIXEL, number_at};
@@ -41,30 +41,20 @@ impl Grid {
 
     /// The first column at or after each position, given in columns: a whole number.
     #[inline(always)]
-    pub(crate) fn ceil_all<S: Simd, V>(&self, positions: V) -> V
-    where
-        V: SimdFloat<S, Element: Position>,
-    {
+    pub(crate) fn ceil_all<S: Simd>(&self, positions: f32x8<S>) -> f32x8<S> {
         self.clamp_all(positions.ceil())
     }
 
     /// The number of columns at or before each position, given in columns.
     #[inline(always)]
-    pub(crate) fn count_all<S: Simd, V>(&self, positions: V) -> V
-    where
-        V: SimdFloat<S, Element: Position>,
-    {
-        self.clamp_all(positions.floor() + V::Element::of(1.0))
+    pub(crate) fn count_all<S: Simd>(&self, positions: f32x8<S>) -> f32x8<S> {
+        self.clamp_all(positions.floor() + 1.0)
     }
 
     /// The nearest column, or N.
     #[inline(always)]
-    fn clamp_all<S: Simd, V>(&self, columns: V) -> V
-    where
-        V: SimdFloat<S, Element: Position>,
-    {
-        let [first, end] = [0.0, self.size as f32].map(V::Element::of);
-        columns.max(first).min(end)
+    fn clamp_all<S: Simd>(&self, columns: f32x8<S>) -> f32x8<S> {
+        columns.max(0.0).min(self.size as f32)
     }
 
     /// The first column at or after a position given in columns.
@@ -100,9 +90,6 @@ pub(crate) trait Position: SimdFloatElement {
     /// The coordinates of neighbouring rows or columns, relative to the first.
     const OFFSETS: [Self; ROWS];
 
-    /// A number that f32 holds.
-    fn of(number: f32) -> Self;
-
     /// Stores whole numbers of columns.
     fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
     where
@@ -122,11 +109,6 @@ impl Position for f32 {
         }
         offsets
     };
-
-    #[inline(always)]
-    fn of(number: f32) -> f32 {
-        number
-    }
 
     #[inline(always)]
     fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
@@ -152,11 +134,6 @@ impl Position for f64 {
         }
         offsets
     };
-
-    #[inline(always)]
-    fn of(number: f32) -> f64 {
-        f64::from(number)
-    }
 
     #[inline(always)]
     fn store<S: Simd, V>(numbers: V, columns: &mut [u32])

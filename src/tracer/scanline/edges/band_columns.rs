@@ -1,7 +1,7 @@
 //! The columns of a region in a band of rows, as far as they are known.
 
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, mask32x8};
 
 use crate::tracer::scanline::grid::{Position, ROWS};
 
@@ -36,39 +36,29 @@ impl BandColumns {
         is_certain: true,
     };
 
-    /// Forgets what was stored: all rows are to be stored anew.
-    pub(crate) fn begin(&mut self) {
-        self.filled = 0;
-        self.is_certain = true;
-    }
-
-    /// Stores the columns of as many rows as there are lanes, from row `first` of the band on. Rows
-    /// that are not `is_crossed` have none.
+    /// Stores the columns of all rows. Those that are not `is_crossed` have none.
     #[inline(always)]
-    pub(crate) fn store<S: Simd, V>(
+    pub(crate) fn store<S: Simd>(
         &mut self,
         simd: S,
-        first: usize,
-        is_crossed: V::Mask,
-        possible: [V; 2],
-        certain: [V; 2],
-    ) where
-        V: SimdFloat<S, Element: Position>,
-    {
+        is_crossed: mask32x8<S>,
+        possible: [f32x8<S>; 2],
+        certain: [f32x8<S>; 2],
+    ) {
         let [from, to] = possible;
         let is_filled = is_crossed & from.simd_lt(to);
-        let from = is_filled.select(from, V::splat(simd, V::Element::of(0.0)));
+        let from = is_filled.select(from, f32x8::splat(simd, 0.0));
         let to = is_filled.select(to, from);
-        V::Element::store(from, &mut self.possible[0][first..]);
-        V::Element::store(to, &mut self.possible[1][first..]);
+        f32::store(from, &mut self.possible[0]);
+        f32::store(to, &mut self.possible[1]);
         let [begin, end] = certain;
         let is_some = is_filled & begin.simd_lt(end);
         let begin = is_some.select(begin, from);
         let end = is_some.select(end, from);
-        V::Element::store(begin, &mut self.certain[0][first..]);
-        V::Element::store(end, &mut self.certain[1][first..]);
-        self.filled |= is_filled.to_bitmask() << first;
-        self.is_certain &= (from.simd_eq(begin) & to.simd_eq(end)).all_true();
+        f32::store(begin, &mut self.certain[0]);
+        f32::store(end, &mut self.certain[1]);
+        self.filled = is_filled.to_bitmask();
+        self.is_certain = (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
 
     /// Lets each row without columns begin and end where the nearest row with columns begins, below

@@ -28,6 +28,7 @@ const SIZE: u32 = 500;
 #[derive(Debug, Default)]
 struct Shares {
     outline: f64,
+    chords: f64,
     half_plane: f64,
     sphere_depth: f64,
     face_depth: f64,
@@ -69,9 +70,7 @@ fn check_spheres(
         let depth = Depth::of_sphere(sphere.center, &outline, sphere.support, grid);
         for row in (0..SIZE).step_by(7) {
             let y = grid.coordinate(row);
-            let enclosure =
-                dispatch!(Level::baseline(), simd => outline.enclose_row(simd, y, grid));
-            let ColumnEnclosure { possible, certain } = enclosure;
+            let ColumnEnclosure { possible, certain } = outline.enclose_row(y, grid);
             // No column lies there.
             if certain[0] >= certain[1] || certain[1] <= 0.0 {
                 continue;
@@ -86,6 +85,11 @@ fn check_spheres(
             // Near the outline's top the root carries more error than the bound's slack.
             shares.outline = shares.outline.max(share(begin, possible[0], certain[0]));
             shares.outline = shares.outline.max(share(end, certain[1], possible[1]));
+            let ColumnEnclosure { possible, certain } = outline.chords().enclose_row(y);
+            if certain[0] < certain[1] {
+                shares.chords = shares.chords.max(share(begin, possible[0], certain[0]));
+                shares.chords = shares.chords.max(share(end, certain[1], possible[1]));
+            }
             for column in (certain[0].ceil().max(0.0) as u32..SIZE)
                 .take_while(|column| f64::from(*column) < certain[1])
                 .step_by(11)
@@ -129,7 +133,7 @@ fn check_tetrahedra(
                     possible: all,
                     certain: all,
                 };
-                dispatch!(Level::baseline(), simd => half_plane.cut_row(simd, y, &mut enclosure));
+                dispatch!(Level::baseline(), simd => half_plane.border().cut_row(simd, y, &mut enclosure));
                 let ColumnEnclosure { possible, certain } = enclosure;
                 // n·(X, Y, Z) = n·a.
                 let (n, a) = (exact.normal, exact.at);
@@ -219,13 +223,18 @@ fn no_bound_on_an_edge_or_a_depth_is_out_of_proportion() {
     // A bound that were ten times too small would be exceeded.
     let Shares {
         outline,
+        chords,
         half_plane,
         sphere_depth,
         face_depth,
         surface_depth,
         surface_point,
     } = shares;
-    let solids = outline.min(half_plane).min(sphere_depth).min(face_depth);
+    let solids = outline
+        .min(chords)
+        .min(half_plane)
+        .min(sphere_depth)
+        .min(face_depth);
     let least = solids.min(surface_depth).min(surface_point);
     assert!(least > 0.1 && least < 1.0, "{shares:?}");
 }

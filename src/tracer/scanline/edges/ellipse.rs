@@ -2,16 +2,15 @@
 
 use std::cell::Cell;
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
 
 use crate::number::rounding::{INFLATION, U};
 use crate::number::{Bounded, Divisor, Real};
 use crate::tracer::line::Direction;
+use crate::tracer::scanline::edges::chords::Chords;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, NOWHERE};
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
-use crate::tracer::scanline::fetch::fetch;
-use crate::tracer::scanline::grid::{Grid, in_columns};
+use crate::tracer::scanline::grid::Grid;
 use crate::tracer::sphere::Sphere;
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, number_at};
@@ -20,20 +19,22 @@ use crate::tracer::view_space::{EYE_SQUARED, EYE_Y, EYE_Z, number_at};
 /// functions of Y: an ellipse, with a horizontal chord in every row.
 #[derive(Clone, Copy)]
 pub(crate) struct Ellipse {
+    /// Its chords, as rows cross it.
+    chords: Chords,
     /// The middle of the chord at Y = 0, and how it moves with Y.
-    middle: (f64, f64),
+    pub(super) middle: (f64, f64),
     /// m of each row.
     pub(crate) m: RowOffset,
     /// The square of half the longest chord.
     pub(crate) squared_radius: f64,
     /// The largest |m| of a row that the ellipse may reach.
-    max_m: f64,
+    pub(super) max_m: f64,
     /// A bound on the error of m.
     pub(crate) m_error: f64,
     /// A bound on the error of the square of half a chord.
     pub(crate) chord_error: f64,
     /// A bound on the error of an end of a chord, in columns, without the part of `chord_error`.
-    slack: f64,
+    pub(super) slack: f64,
     /// Whether all of these are finite; otherwise every column is in doubt.
     is_bounded: bool,
 }
@@ -42,16 +43,15 @@ impl Ellipse {
     /// Asks for its memory.
     #[inline(always)]
     pub(crate) fn fetch(&self) {
-        fetch(&self.middle.0);
-        fetch(&self.is_bounded);
+        self.chords.fetch();
     }
 }
 
 /// m as a function of Y: `slope` · (Y − `zero`).
 #[derive(Clone, Copy)]
 pub(crate) struct RowOffset {
-    slope: f64,
-    zero: f64,
+    pub(super) slope: f64,
+    pub(super) zero: f64,
 }
 
 impl RowOffset {
@@ -166,7 +166,8 @@ impl Ellipses {
             m,
             squared_radius,
         });
-        Ellipse {
+        let mut ellipse = Ellipse {
+            chords: Chords::IN_DOUBT,
             middle: (middle.value(), self.middle_per_y.value()),
             m: RowOffset {
                 slope: self.m_per_y.value(),
@@ -179,7 +180,11 @@ impl Ellipses {
             slack,
             // Bounds are finite only if all that they are derived from is.
             is_bounded: chord_error.is_finite() && slack.is_finite(),
+        };
+        if ellipse.is_bounded {
+            ellipse.chords = Chords::of(&ellipse, self.grid);
         }
+        ellipse
     }
 
     /// Bounds for an ellipse of these sizes: mostly those that were derived for larger ones.
@@ -366,61 +371,34 @@ impl ParallelLines {
 }
 
 impl Ellipse {
-    /// The enclosures of as many rows as there are lanes.
-    #[inline(always)]
-    pub(crate) fn enclose<S: Simd>(
-        &self,
-        simd: S,
-        y: S::f64s,
-        grid: Grid,
-    ) -> ColumnEnclosure<S::f64s> {
-        let zero = S::f64s::splat(simd, 0.0);
-        let none = S::f64s::splat(simd, f64::from(NOWHERE));
+    /// Its chords, as rows cross it.
+    pub(crate) fn chords(&self) -> &Chords {
+        &self.chords
+    }
+
+    /// The enclosure of the row at Y, closer than that of its chords.
+    pub(super) fn enclose_row(&self, y: f64, grid: Grid) -> ColumnEnclosure<f64> {
+        let none = f64::from(NOWHERE);
         if !self.is_bounded {
-            let all = S::f64s::splat(simd, f64::from(grid.size));
             return ColumnEnclosure {
-                possible: [zero, all],
-                certain: [zero, none],
+                possible: [0.0, f64::from(grid.size)],
+                certain: [0.0, none],
             };
         }
-        let m = self.m.of_rows::<S>(y);
+        let m = self.m.at(y);
         let squared = -(m * m) + self.squared_radius;
         let (upper, lower) = (squared + self.chord_error, squared - self.chord_error);
-        let is_met = m.abs().simd_le(self.max_m) & upper.simd_ge(zero);
-        let is_certain = is_met & lower.simd_gt(zero);
+        let is_met = m.abs() <= self.max_m && upper >= 0.0;
         let middle = y * self.middle.1 + self.middle.0;
+        let ends = |half: f64| [middle - half, middle + half].map(|x| number_at(x, grid.half));
+        let slack = self.slack;
         // m is no NaN here. Where it is infinite, the row misses the ellipse.
-        let half = upper.max(zero).sqrt();
-        let from = in_columns::<S>(grid, middle - half) - self.slack;
-        let to = in_columns::<S>(grid, middle + half) + self.slack;
-        let possible = [from, is_met.select(to, none)];
-        let half = lower.max(zero).sqrt();
-        let from = in_columns::<S>(grid, middle - half) + self.slack;
-        let to = in_columns::<S>(grid, middle + half) - self.slack;
-        let certain = [from, is_certain.select(to, none)];
+        let [from, to] = ends(upper.max(0.0).sqrt());
+        let possible = [from - slack, if is_met { to + slack } else { none }];
+        let [from, to] = ends(lower.max(0.0).sqrt());
+        let is_certain = is_met && lower > 0.0;
+        let certain = [from + slack, if is_certain { to - slack } else { none }];
         ColumnEnclosure { possible, certain }
-    }
-
-    /// The enclosure of the row at Y.
-    #[inline(always)]
-    pub(super) fn enclose_row<S: Simd>(&self, simd: S, y: f64, grid: Grid) -> ColumnEnclosure<f64> {
-        let y = S::f64s::splat(simd, y);
-        let ColumnEnclosure { possible, certain } = self.enclose(simd, y, grid);
-        ColumnEnclosure {
-            possible: possible.map(|end| end.as_slice()[0]),
-            certain: certain.map(|end| end.as_slice()[0]),
-        }
-    }
-
-    /// Whether the pixel at X, Y is in the ellipse; `None` where that is in doubt.
-    pub(crate) fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let ColumnEnclosure { possible, certain } =
-            dispatch!(Level::baseline(), simd => self.enclose_row(simd, y, grid));
-        let column = number_at(x, grid.half);
-        if column < possible[0] || column > possible[1] {
-            return Some(false);
-        }
-        (certain[0] <= column && column <= certain[1]).then_some(true)
     }
 
     /// The half-open range of the rows that the ellipse may reach.

@@ -8,20 +8,20 @@
 //! ellipse is a polynomial in X and Y, the position on the screen in thirds of a pixel from its
 //! centre. In a row of pixels Y is fixed, and the row's edges are roots of these polynomials.
 //!
-//! A root is computed with a bound on its error, derived where it is used: of a line in f32, of an
-//! ellipse in f64. Columns beyond the bound need no test. The columns within it, rarely one, are
-//! tested one by one.
+//! A root is computed in f32 with a bound on its error, derived where it is used. Columns beyond the
+//! bound need no test. The columns within it, rarely one, are tested one by one, in f64.
 
 use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x8};
 
 use crate::tracer::scanline::edges::band_columns::BandColumns;
+use crate::tracer::scanline::edges::border::Root;
 use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
-use crate::tracer::scanline::edges::half_plane::{HalfPlane, Root};
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::fetch::fetch;
-use crate::tracer::scanline::grid::{Grid, Position, ROWS, offsets};
+use crate::tracer::scanline::grid::{Grid, Position, ROWS};
 
 /// So few columns are searched one by one as fast as in any other way.
 const FEW_COLUMNS: u32 = 8;
@@ -179,29 +179,23 @@ impl<'f> Region<'f> {
                 continue;
             }
             let y = grid.coordinate(row + i as u32);
+            let chord = self.ellipse.map(|ellipse| ellipse.enclose_row(y, grid));
+            if let Some(ColumnEnclosure { possible, .. }) = chord {
+                from = from.max(grid.ceil(possible[0]));
+                to = to.min(grid.count(possible[1])).max(from);
+            }
             if to > from + FEW_COLUMNS && self.misses((from, to), y, grid) {
                 to = from;
             }
             let is_certain = |column: u32| certain.0 <= column && column < certain.1;
             let holds = |column: u32| match is_certain(column) {
                 true => Some(true),
-                false => self.decide(grid.coordinate(column), y, grid),
+                false => self.decide(column, (y, chord.as_ref()), grid),
             };
-            let (mut first, mut last) = (None, None);
-            while from < to && first.is_none() {
-                match holds(from) {
-                    Some(false) => from += 1,
-                    Some(true) => first = Some(from),
-                    None => break,
-                }
-            }
-            while from < to && last.is_none() {
-                match holds(to - 1) {
-                    Some(false) => to -= 1,
-                    Some(true) => last = Some(to - 1),
-                    None => break,
-                }
-            }
+            let (out, first) = search(from..to, holds);
+            from += out;
+            let (out, last) = search((from..to).rev(), holds);
+            to -= out;
             // A region is convex: the columns between two of its columns are in it.
             let decided = [first, last].into_iter().flatten();
             let decided = decided.flat_map(|column| [column, column + 1]);
@@ -241,14 +235,20 @@ impl<'f> Region<'f> {
         self.half_planes.iter().chain(self.clip)
     }
 
-    /// Whether the pixel at X, Y is in the region; `None` where that is in doubt.
-    fn decide(&self, x: f64, y: f64, grid: Grid) -> Option<bool> {
-        let mut all = match &self.ellipse {
-            Some(ellipse) => ellipse.decide(x, y, grid),
+    /// Whether a pixel of the row at Y is in the region; `None` where that is in doubt. `chord` is
+    /// that of the ellipse.
+    fn decide(
+        &self,
+        column: u32,
+        (y, chord): (f64, Option<&ColumnEnclosure<f64>>),
+        grid: Grid,
+    ) -> Option<bool> {
+        let mut all = match chord {
+            Some(chord) => chord.holds(f64::from(column)),
             None => Some(true),
         };
         for half_plane in self.all_half_planes() {
-            match half_plane.decide_near(x, y, grid) {
+            match half_plane.decide_near(grid.coordinate(column), y, grid) {
                 Some(false) => return Some(false),
                 Some(true) => {}
                 None => all = None,
@@ -256,6 +256,24 @@ impl<'f> Region<'f> {
         }
         all
     }
+}
+
+/// How many columns, from the first on, are certainly not in a region, and the first that certainly
+/// is, if not too many in doubt lie before it.
+fn search(
+    columns: impl Iterator<Item = u32>,
+    holds: impl Fn(u32) -> Option<bool>,
+) -> (u32, Option<u32>) {
+    let (mut out, mut doubts) = (0, 0);
+    for column in columns {
+        match holds(column) {
+            Some(true) => return (out, Some(column)),
+            Some(false) if doubts == 0 => out += 1,
+            None if doubts < FEW_COLUMNS => doubts += 1,
+            _ => break,
+        }
+    }
+    (out, None)
 }
 
 /// Finds the columns of an intersection in the band of rows from `row` on, as far as bounds on
@@ -269,63 +287,29 @@ pub(crate) fn enclose<S: Simd>(
     grid: Grid,
     band: &mut BandColumns,
 ) {
-    band.begin();
-    let Some(ellipse) = ellipse else {
-        let y = offsets::<S, f32x8<S>>(simd, 0) + grid.coordinate(row) as f32;
-        let zero = f32x8::splat(simd, 0.0);
-        let all = [zero, zero + grid.size as f32];
-        let mut enclosure = ColumnEnclosure {
+    // f32 holds Y of every row.
+    let y = f32x8::from_slice(simd, &f32::OFFSETS) + grid.coordinate(row) as f32;
+    let [from, to] = [rows.0, rows.1].map(|row| grid.coordinate(row) as f32);
+    let is_crossed = y.simd_ge(from) & y.simd_lt(to);
+    let zero = f32x8::splat(simd, 0.0);
+    let all = [zero, zero + grid.size as f32];
+    let mut enclosure = match ellipse {
+        Some(ellipse) => ellipse.chords().enclose(simd, y),
+        None => ColumnEnclosure {
             possible: all,
             certain: all,
-        };
-        cut(simd, (half_planes, clip), y, &mut enclosure);
-        store(simd, (rows, grid), (y, 0), enclosure, band);
-        return;
+        },
     };
-    // The chords of ellipses take f64.
-    for first in (0..ROWS).step_by(S::f64s::LEN) {
-        let y = offsets::<S, S::f64s>(simd, first) + grid.coordinate(row);
-        let mut enclosure = ellipse.enclose(simd, y, grid);
-        cut(simd, (half_planes, clip), y, &mut enclosure);
-        store(simd, (rows, grid), (y, first), enclosure, band);
-    }
-}
-
-/// Intersects enclosures with half-planes.
-#[inline(always)]
-fn cut<S: Simd, V>(
-    simd: S,
-    (half_planes, clip): (&[impl Cut], &[HalfPlane<'_>]),
-    y: V,
-    enclosure: &mut ColumnEnclosure<V>,
-) where
-    V: SimdFloat<S, Element: Position>,
-{
     for half_plane in half_planes {
-        half_plane.cut(simd, y, enclosure);
+        half_plane.cut(simd, y, &mut enclosure);
     }
     for half_plane in clip {
-        half_plane.cut(simd, y, enclosure);
+        half_plane.cut(simd, y, &mut enclosure);
     }
-}
-
-/// Rounds enclosures of the rows at these Y, from row `first` of the band on, to columns.
-#[inline(always)]
-fn store<S: Simd, V>(
-    simd: S,
-    (rows, grid): ((u32, u32), Grid),
-    (y, first): (V, usize),
-    ColumnEnclosure { possible, certain }: ColumnEnclosure<V>,
-    band: &mut BandColumns,
-) where
-    V: SimdFloat<S, Element: Position>,
-{
-    // f32 holds Y of every row.
-    let [from, to] = [rows.0, rows.1].map(|row| V::Element::of(grid.coordinate(row) as f32));
-    let is_crossed = y.simd_ge(from) & y.simd_lt(to);
+    let ColumnEnclosure { possible, certain } = enclosure;
     let possible = [grid.ceil_all(possible[0]), grid.count_all(possible[1])];
     let certain = [grid.ceil_all(certain[0]), grid.count_all(certain[1])];
-    band.store(simd, first, is_crossed, possible, certain);
+    band.store(simd, is_crossed, possible, certain);
 }
 
 #[cfg(test)]

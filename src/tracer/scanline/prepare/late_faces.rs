@@ -19,7 +19,8 @@ use fearless_simd::Simd;
 
 use crate::number::Bounded;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
-use crate::tracer::scanline::edges::half_plane::{Border, HalfPlane};
+use crate::tracer::scanline::edges::border::Border;
+use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::{Region, enclose};
 use crate::tracer::scanline::edges::table::RegionKinds;
 use crate::tracer::scanline::fetch::fetch;
