@@ -1,7 +1,7 @@
 //! Columns and rows of pixels, and their coordinates X and Y on the screen.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, SimdFloatElement, f32x8};
+use fearless_simd::{Simd, f32x8};
 
 use crate::image::MAX_SIZE;
 use crate::tracer::view_space::{self, PIXEL, number_at};
@@ -37,6 +37,16 @@ impl Grid {
     #[inline]
     pub(crate) fn coordinate(&self, number: u32) -> f64 {
         view_space::coordinate(number, self.half)
+    }
+
+    /// Y of the rows of the band from `first` on.
+    #[inline(always)]
+    pub(crate) fn band<S: Simd>(&self, simd: S, first: u32) -> f32x8<S> {
+        let mut offsets = [0.0; ROWS];
+        for (offset, number) in offsets.iter_mut().zip(OFFSETS) {
+            *offset = number as f32;
+        }
+        f32x8::from_slice(simd, &offsets) + self.coordinate(first) as f32
     }
 
     /// The first column at or after each position, given in columns: a whole number.
@@ -85,78 +95,25 @@ impl Grid {
     }
 }
 
-/// f32 or f64: the floats of coordinates and of positions in columns.
-pub(crate) trait Position: SimdFloatElement {
-    /// The coordinates of neighbouring rows or columns, relative to the first.
-    const OFFSETS: [Self; ROWS];
+/// The coordinates of neighbouring rows or columns, relative to the first.
+const OFFSETS: [f64; ROWS] = {
+    let mut offsets = [0.0; ROWS];
+    let mut number = 0;
+    while number < ROWS {
+        offsets[number] = PIXEL * number as f64;
+        number += 1;
+    }
+    offsets
+};
 
-    /// Stores whole numbers of columns.
-    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
-    where
-        V: SimdFloat<S, Element = Self>;
+/// As many offsets as there are lanes, from that of number `first` on.
+#[inline(always)]
+pub(crate) fn offsets<S: Simd>(simd: S, first: usize) -> S::f64s {
+    S::f64s::from_slice(simd, &OFFSETS[first..first + S::f64s::LEN])
 }
 
 // f32 holds all coordinates: they are multiples of one half below 2²³.
 const _: () = assert!(6 * MAX_SIZE < 1 << 24);
-
-impl Position for f32 {
-    const OFFSETS: [f32; ROWS] = {
-        let mut offsets = [0.0; ROWS];
-        let mut number = 0;
-        while number < ROWS {
-            offsets[number] = PIXEL as f32 * number as f32;
-            number += 1;
-        }
-        offsets
-    };
-
-    #[inline(always)]
-    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
-    where
-        V: SimdFloat<S, Element = f32>,
-    {
-        // With 2²³ added, a whole number's bits stand behind the exponent's.
-        const SHIFT: f32 = (1 << 23) as f32;
-        let shifted = numbers + SHIFT;
-        for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
-            *column = number.to_bits() ^ SHIFT.to_bits();
-        }
-    }
-}
-
-impl Position for f64 {
-    const OFFSETS: [f64; ROWS] = {
-        let mut offsets = [0.0; ROWS];
-        let mut number = 0;
-        while number < ROWS {
-            offsets[number] = PIXEL * number as f64;
-            number += 1;
-        }
-        offsets
-    };
-
-    #[inline(always)]
-    fn store<S: Simd, V>(numbers: V, columns: &mut [u32])
-    where
-        V: SimdFloat<S, Element = f64>,
-    {
-        // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the
-        // upper half.
-        let shifted = numbers + f64::from_bits((1023 + 52) << 52);
-        for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
-            *column = number.to_bits() as u32;
-        }
-    }
-}
-
-/// As many offsets as there are lanes, from that of number `first` on.
-#[inline(always)]
-pub(crate) fn offsets<S: Simd, V>(simd: S, first: usize) -> V
-where
-    V: SimdFloat<S, Element: Position>,
-{
-    V::from_slice(simd, &V::Element::OFFSETS[first..first + V::LEN])
-}
 
 /// X in columns.
 #[inline(always)]

@@ -1,9 +1,9 @@
 //! Sorts the numbers of all rows of a band at once, by vector instructions.
 //!
-//! A bitonic sorting network (Batcher, Sorting networks and their applications, 1968): which numbers
-//! it compares depends on nothing but how many there are. So it has no branches that no processor
-//! predicts. Every comparison puts the smaller number first, so that numbers larger than all others
-//! would stay at the end: those that are missing there need no place.
+//! A bitonic sorting network (Batcher, Sorting networks and their applications, 1968): which
+//! numbers it compares depends on nothing but how many there are. So it has no branches that no
+//! processor predicts. Every comparison puts the smaller number first, so that numbers larger than
+//! all others would stay at the end: those that are missing there need no place.
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
@@ -27,8 +27,8 @@ pub(crate) fn sort_rows<S: Simd>(simd: S, numbers: &mut [[f64; ROWS]]) {
     }
 }
 
-/// Merges the first `half` numbers of each row with the others, of which there are as many or fewer.
-/// Both are sorted.
+/// Merges the first `half` numbers of each row with the others, of which there are as many or
+/// fewer. Both are sorted.
 #[inline(always)]
 fn merge<S: Simd>(simd: S, numbers: &mut [[f64; ROWS]], half: usize) {
     let Some((left, right)) = numbers.split_at_mut_checked(half) else {
@@ -82,7 +82,8 @@ fn sort_blocks<S: Simd, const BITONIC: bool>(simd: S, numbers: &mut [[f64; ROWS]
     }
 }
 
-/// Sorts a block by the fewest comparisons: section 5.3.4 of Knuth's The Art of Computer Programming.
+/// Sorts a block by the fewest comparisons: section 5.3.4 of Knuth's The Art of Computer
+/// Programming.
 #[inline(always)]
 fn sort_block<S: Simd>(lanes: &mut [S::f64s; BLOCK]) {
     compare_lanes::<S, _>(lanes, [(0, 2), (1, 3), (4, 6), (5, 7)]);

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
 
-use crate::tracer::scanline::grid::{Position, ROWS};
+use crate::tracer::scanline::grid::ROWS;
 
 /// A bit for each row of a band.
 const ALL: u64 = (1 << ROWS) - 1;
@@ -49,14 +49,12 @@ impl BandColumns {
         let is_filled = is_crossed & from.simd_lt(to);
         let from = is_filled.select(from, f32x8::splat(simd, 0.0));
         let to = is_filled.select(to, from);
-        f32::store(from, &mut self.possible[0]);
-        f32::store(to, &mut self.possible[1]);
+        self.possible = [whole(from), whole(to)];
         let [begin, end] = certain;
         let is_some = is_filled & begin.simd_lt(end);
         let begin = is_some.select(begin, from);
         let end = is_some.select(end, from);
-        f32::store(begin, &mut self.certain[0]);
-        f32::store(end, &mut self.certain[1]);
+        self.certain = [whole(begin), whole(end)];
         self.filled = is_filled.to_bitmask();
         self.is_certain = (from.simd_eq(begin) & to.simd_eq(end)).all_true();
     }
@@ -83,4 +81,17 @@ impl BandColumns {
             empty &= empty - 1;
         }
     }
+}
+
+/// Whole numbers of columns.
+#[inline(always)]
+fn whole<S: Simd>(numbers: f32x8<S>) -> [u32; ROWS] {
+    // With 2²³ added, a whole number's bits stand behind the exponent's.
+    const SHIFT: f32 = (1 << 23) as f32;
+    let shifted = numbers + SHIFT;
+    let mut columns = [0; ROWS];
+    for (column, number) in columns.iter_mut().zip(shifted.as_slice()) {
+        *column = number.to_bits() ^ SHIFT.to_bits();
+    }
+    columns
 }

@@ -16,8 +16,8 @@ pub(super) type Height<R> = [R; 3];
 /// The border of a half-plane, as rows cross it: in f32, with bounds that cover that.
 ///
 /// A row crosses a *sloping* border at its root, at least `low` + `per_y` · Y and at most `high` +
-/// `per_y` · Y, in columns. On the side on which the half-plane does not end, the bound is infinite;
-/// `doubt` is how far the finite bound can be from one on the root's other side.
+/// `per_y` · Y, in columns. On the side on which the half-plane does not end, the bound is
+/// infinite; `doubt` is how far the finite bound can be from one on the root's other side.
 ///
 /// Of a *level* border, and of one of which f64 does not tell that it slopes, `low` + `per_y` · Y
 /// stands in for the sum of the half-plane, and `high` bounds the error of that. `doubt` is
@@ -63,8 +63,9 @@ impl Border {
         let slack =
             ((carried + magnitude * (8.0 * U)) * inverse.abs() + 16.0 * U * size) * INFLATION;
         // In f32, per_y rounds by v, which moves the root by v of |per_y · Y|, and so does the
-        // product with Y; the bound at Y = 0 rounds by v of itself. The sum rounds by v of N between 0
-        // and N. Below 0 and beyond N are no columns, and rounding is monotone: there it stays.
+        // product with Y; the bound at Y = 0 rounds by v of itself. The sum rounds by v of N
+        // between 0 and N. Below 0 and beyond N are no columns, and rounding is monotone: there it
+        // stays.
         let slack =
             (slack + (at.abs() + root_per_y.abs() * (2.0 * max) + size) * U_F32) * INFLATION_F32;
         // A bound lies within twice the slack from the root, and this one on its other side after

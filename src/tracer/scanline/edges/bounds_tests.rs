@@ -133,7 +133,8 @@ fn check_tetrahedra(
                     possible: all,
                     certain: all,
                 };
-                dispatch!(Level::baseline(), simd => half_plane.border().cut_row(simd, y, &mut enclosure));
+                let border = half_plane.border();
+                dispatch!(Level::baseline(), simd => border.cut_row(simd, y, &mut enclosure));
                 let ColumnEnclosure { possible, certain } = enclosure;
                 // n·(X, Y, Z) = n·a.
                 let (n, a) = (exact.normal, exact.at);

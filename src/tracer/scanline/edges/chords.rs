@@ -57,15 +57,16 @@ impl Chords {
         let slope = slope * COLUMNS;
         let squared_radius = ellipse.squared_radius * (COLUMNS * COLUMNS);
         let [max_k, k_error] = [ellipse.max_m, ellipse.m_error].map(|length| length * COLUMNS);
-        // The zero is the sum of its f32 and of what that rounds off, which is v of it and rounds by
-        // v again. So Y − zero rounds by v of itself, by v² of the zero, and by v of what is left;
-        // the slope and the product with it round by v.
+        // The zero is the sum of its f32 and of what that rounds off, which is v of it and rounds
+        // by v again. So Y − zero rounds by v of itself, by v² of the zero, and by v of what is
+        // left; the slope and the product with it round by v.
         let near_zero = slope.abs() * zero.abs() * (4.0 * V * V) + TINY;
         let max_k = max_k * (1.0 + 8.0 * V) + near_zero;
         let rounded = 5.0 * V * max_k + near_zero;
-        // As for f64: |(k + ε)² − k²| ≤ 2|k|ε + ε². `chord_error` has the part without `rounded`, for
-        // the |k| that f64 allows, which is less by 1.6 of `rounded` at most. The square, R² and their
-        // difference round by v of k² or R²; then the sum with this bound does, and the bound itself.
+        // As for f64: |(k + ε)² − k²| ≤ 2|k|ε + ε². `chord_error` has the part without `rounded`,
+        // for the |k| that f64 allows, which is less by 1.6 of `rounded` at most. The square, R²
+        // and their difference round by v of k² or R²; then the sum with this bound does, and the
+        // bound itself.
         let chord_error = ellipse.chord_error * (COLUMNS * COLUMNS)
             + (2.0 * max_k + 6.0 * k_error + rounded) * rounded
             + 3.0 * V * (max_k * max_k + squared_radius.abs());

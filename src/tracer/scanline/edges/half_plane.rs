@@ -236,8 +236,8 @@ fn origin(plane: Option<&PixelPlane>, grid: Grid) -> Vector<Bounded> {
     plane.map_or_else(|| screen_origin(grid), |plane| plane.origin)
 }
 
-/// The height of points over the border of a half-space with this normal. `origin` is the point at X = Y
-/// = 0, seen from the border. `changes` are those of the points per
+/// The height of points over the border of a half-space with this normal. `origin` is the point at
+/// X = Y = 0, seen from the border. `changes` are those of the points per
 /// X and per Y; `None` on the screen.
 #[inline(always)]
 fn height<R: Ring>(n: Vector<R>, origin: Vector<R>, changes: Option<[Vector<R>; 2]>) -> Height<R> {

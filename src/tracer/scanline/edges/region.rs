@@ -8,8 +8,8 @@
 //! ellipse is a polynomial in X and Y, the position on the screen in thirds of a pixel from its
 //! centre. In a row of pixels Y is fixed, and the row's edges are roots of these polynomials.
 //!
-//! A root is computed in f32 with a bound on its error, derived where it is used. Columns beyond the
-//! bound need no test. The columns within it, rarely one, are tested one by one, in f64.
+//! A root is computed in f32 with a bound on its error, derived where it is used. Columns beyond
+//! the bound need no test. The columns within it, rarely one, are tested one by one, in f64.
 
 use bumpalo_herd::Member;
 use fearless_simd::prelude::*;
@@ -21,7 +21,7 @@ use crate::tracer::scanline::edges::ellipse::Ellipse;
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::fetch::fetch;
-use crate::tracer::scanline::grid::{Grid, Position, ROWS};
+use crate::tracer::scanline::grid::{Grid, ROWS};
 
 /// So few columns are searched one by one as fast as in any other way.
 const FEW_COLUMNS: u32 = 8;
@@ -287,8 +287,7 @@ pub(crate) fn enclose<S: Simd>(
     grid: Grid,
     band: &mut BandColumns,
 ) {
-    // f32 holds Y of every row.
-    let y = f32x8::from_slice(simd, &f32::OFFSETS) + grid.coordinate(row) as f32;
+    let y = grid.band(simd, row);
     let [from, to] = [rows.0, rows.1].map(|row| grid.coordinate(row) as f32);
     let is_crossed = y.simd_ge(from) & y.simd_lt(to);
     let zero = f32x8::splat(simd, 0.0);

@@ -17,7 +17,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::U;
-use crate::tracer::scanline::grid::{Columns, Grid, Position, ROWS, in_columns, offsets};
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
 use crate::tracer::view_space::PIXEL;
@@ -162,7 +162,7 @@ impl SphereBand {
         self.facing.certain = 0;
         self.bright = Intervals::default();
         for lane in (0..ROWS).step_by(S::f64s::LEN) {
-            let y = offsets::<S, S::f64s>(simd, lane) + grid.coordinate(first);
+            let y = offsets(simd, lane) + grid.coordinate(first);
             let m = sphere.m.of_rows::<S>(y);
             let rows = RowLanes {
                 simd,
@@ -223,8 +223,14 @@ fn select<S: Simd>(mask: S::mask64s, yes: Ends<S::f64s>, no: Ends<S::f64s>) -> E
 
 #[inline(always)]
 fn store<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
-    f64::store(ends[0], &mut intervals[0][lane..]);
-    f64::store(ends[1], &mut intervals[1][lane..]);
+    for (numbers, columns) in ends.iter().zip(intervals) {
+        // With 2⁵² added, a whole number's bits are its own and the exponent's, which lies in the
+        // upper half.
+        let shifted = *numbers + f64::from_bits((1023 + 52) << 52);
+        for (column, number) in columns[lane..].iter_mut().zip(shifted.as_slice()) {
+            *column = number.to_bits() as u32;
+        }
+    }
 }
 
 // No vectors in closures below: see `shade/run.rs`.

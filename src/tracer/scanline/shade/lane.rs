@@ -52,7 +52,7 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn differences<S: Simd>(simd: S, x: f64, center: f64) -> S::f64s {
-        offsets::<S, S::f64s>(simd, 0) + x - center
+        offsets(simd, 0) + x - center
     }
 
     #[inline(always)]
