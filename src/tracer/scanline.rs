@@ -73,8 +73,8 @@
 //! cylinder, two ellipses and what lies between them, would need several regions.
 //!
 //! What was tried and made it slower: closures given to `map` inside of vector code, which are
-//! compiled without the vector instructions around them; bands of 16 rows; shading the spans of a
-//! sphere together at the end of some rows.
+//! compiled without the vector instructions around them; bands of 16 rows; shading the spans that
+//! show spheres after all others of a row, or of some rows; narrower vectors for short runs.
 
 mod active;
 mod edges;
