@@ -49,8 +49,8 @@
 //! - `write/` fills spans of one paint (`paint`), stores few pixels and shaded ones (`pixels`), and
 //!   leaves out what stands there from the frame before (`history`).
 //!
-//! Edges and visibility are f32 and f64 with proven bounds for every kernel: a filter. Shading has bounds
-//! for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the
+//! Edges and visibility are f32 and f64 with proven bounds for every kernel: a filter. Shading has
+//! bounds for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the
 //! definition of the picture (`pixel.rs`), from which every formula here is derived.
 //!
 //! A new kind of solid, such as a cylinder, would need

@@ -114,9 +114,3 @@ pub(crate) fn offsets<S: Simd>(simd: S, first: usize) -> S::f64s {
 
 // f32 holds all coordinates: they are multiples of one half below 2²³.
 const _: () = assert!(6 * MAX_SIZE < 1 << 24);
-
-/// X in columns.
-#[inline(always)]
-pub(crate) fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
-    x * (1.0 / PIXEL) + grid.half
-}

@@ -85,7 +85,8 @@ pub(crate) struct RowEdges {
 }
 
 /// So many regions are crossed before the edges of the first are written: no crossing then waits
-/// for what is unpredictable about the edges of another, and the memory of all is asked for at once.
+/// for what is unpredictable about the edges of another, and the memory of all is asked for at
+/// once.
 const AT_ONCE: usize = 16;
 
 /// Which edges were added together.
@@ -110,8 +111,8 @@ impl RowEdges {
         self.used = 0;
     }
 
-    /// The number of places for edges that are in use, those that stay empty because another row of
-    /// the band has more edges included.
+    /// The number of places for edges that are in use, those included that stay empty because
+    /// another row of the band has more edges, or because whole blocks are sorted.
     pub(crate) fn places(&self) -> usize {
         ROWS * self.used
     }

@@ -113,3 +113,35 @@ fn compare_lanes<S: Simd, const N: usize>(
         (lanes[first], lanes[second]) = (a.min(b), a.max(b));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::dispatch;
+
+    use super::*;
+    use crate::random::Random;
+    use crate::tracer;
+
+    #[test]
+    fn numbers_of_all_rows_are_sorted_each_by_itself() {
+        let mut random = Random::new();
+        for level in tracer::Simd::all().into_iter().map(|simd| simd.0) {
+            for blocks in (0..20).chain([64, 65]) {
+                let few = 1 + random.below(300);
+                let mut number = || random.below(few) as f64;
+                let numbers = (0..BLOCK * blocks).map(|_| [(); ROWS].map(|()| number()));
+                let numbers: Vec<[f64; ROWS]> = numbers.collect();
+                let mut sorted = numbers.clone();
+                dispatch!(level, simd => sort_rows(simd, &mut sorted));
+                for row in 0..ROWS {
+                    let of_row = |all: &[[f64; ROWS]]| -> Vec<f64> {
+                        all.iter().map(|numbers| numbers[row]).collect()
+                    };
+                    let mut expected = of_row(&numbers);
+                    expected.sort_by(f64::total_cmp);
+                    assert_eq!(of_row(&sorted), expected, "{blocks} blocks, row {row}");
+                }
+            }
+        }
+    }
+}

@@ -9,8 +9,8 @@ use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut, NOWHERE};
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::view_space::PIXEL;
 
-/// The height of points over the border of a half-space with this normal: at X = Y = 0, and its
-/// change per X and per Y.
+/// The height of points over the border of a half-space: at X = Y = 0, and its change per X and per
+/// Y.
 pub(super) type Height<R> = [R; 3];
 
 /// The border of a half-plane, as rows cross it: in f32, with bounds that cover that.

@@ -64,9 +64,10 @@ impl Chords {
         let max_k = max_k * (1.0 + 8.0 * V) + near_zero;
         let rounded = 5.0 * V * max_k + near_zero;
         // As for f64: |(k + ε)² − k²| ≤ 2|k|ε + ε². `chord_error` has the part without `rounded`,
-        // for the |k| that f64 allows, which is less by 1.6 of `rounded` at most. The square, R²
-        // and their difference round by v of k² or R²; then the sum with this bound does, and the
-        // bound itself.
+        // for the |k| that f64 allows. That of a row that passes is more by less than 3 of
+        // `rounded`: 1.6 in `max_k`, and what f32 is off by; there `m_error` grows by a few v² at
+        // most. The square, R² and their difference round by v of k² or R²; then the sum with this
+        // bound does, and the bound itself.
         let chord_error = ellipse.chord_error * (COLUMNS * COLUMNS)
             + (2.0 * max_k + 6.0 * k_error + rounded) * rounded
             + 3.0 * V * (max_k * max_k + squared_radius.abs());

@@ -131,9 +131,9 @@ impl ErrorBounds {
 
     /// Whether bounds for these sizes are nearly as good as its own for a smaller ellipse: they
     /// leave hardly a column in doubt, since an end of a chord moves by 2⁻³² of a column, and by
-    /// 2⁻¹⁶ of the longest chord where the chord is shortest; and no radius is four times the other,
-    /// so that the bounds of the shader, which grow with `chord_error` over R², do not become four
-    /// times as wide.
+    /// 2⁻¹⁶ of the longest chord where the chord is shortest; and no radius is four times the
+    /// other, so that the bounds of the shader, which grow with `chord_error` over R², do not
+    /// become four times as wide.
     fn serve(&self, sizes: Sizes, squared_radius: Bounded) -> bool {
         const NARROW: f64 = 1.0 / (1_u64 << 32) as f64;
         sizes.squared_radius.value() <= 16.0 * squared_radius.value()
@@ -153,8 +153,8 @@ impl Ellipses {
     }
 
     /// The ellipse with this middle and this m at Y = 0.
-    // Inlined, so that it is written where it is kept: a copy reads by wide loads what narrow stores
-    // have just written, which the processor cannot forward, so that it waits.
+    // Inlined, so that it is written where it is kept: a copy reads by wide loads what narrow
+    // stores have just written, which the processor cannot forward, so that it waits.
     #[inline(always)]
     fn ellipse(&self, middle: Bounded, m: Bounded, squared_radius: Bounded) -> Ellipse {
         let ErrorBounds {
@@ -376,7 +376,7 @@ impl Ellipse {
         &self.chords
     }
 
-    /// The enclosure of the row at Y, closer than that of its chords.
+    /// The enclosure of the row at Y, closer than that of its chords: their formula in f64, in X.
     pub(super) fn enclose_row(&self, y: f64, grid: Grid) -> ColumnEnclosure<f64> {
         let none = f64::from(NOWHERE);
         if !self.is_bounded {

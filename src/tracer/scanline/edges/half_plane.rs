@@ -237,8 +237,8 @@ fn origin(plane: Option<&PixelPlane>, grid: Grid) -> Vector<Bounded> {
 }
 
 /// The height of points over the border of a half-space with this normal. `origin` is the point at
-/// X = Y = 0, seen from the border. `changes` are those of the points per
-/// X and per Y; `None` on the screen.
+/// X = Y = 0, seen from the border. `changes` are those of the points per X and per Y; `None` on the
+/// screen.
 #[inline(always)]
 fn height<R: Ring>(n: Vector<R>, origin: Vector<R>, changes: Option<[Vector<R>; 2]>) -> Height<R> {
     let constant = n.dot(origin);

@@ -23,7 +23,8 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::fetch::fetch;
 use crate::tracer::scanline::grid::{Grid, ROWS};
 
-/// So few columns are searched one by one as fast as in any other way.
+/// So few columns are searched one by one as fast as in any other way. No more in doubt are passed
+/// over: beside them are mostly columns that a region certainly has.
 const FEW_COLUMNS: u32 = 8;
 
 /// The intersection of half-planes and of an ellipse, if there is one.

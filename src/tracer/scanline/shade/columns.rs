@@ -17,7 +17,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::number::rounding::U;
-use crate::tracer::scanline::grid::{Columns, Grid, ROWS, in_columns, offsets};
+use crate::tracer::scanline::grid::{Columns, Grid, ROWS, offsets};
 use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{LinearForm, SphereConstants, ZONES};
 use crate::tracer::view_space::PIXEL;
@@ -231,6 +231,12 @@ fn store<S: Simd>(ends: Ends<S::f64s>, intervals: &mut Intervals, lane: usize) {
             *column = number.to_bits() as u32;
         }
     }
+}
+
+/// X in columns.
+#[inline(always)]
+fn in_columns<S: Simd>(grid: Grid, x: S::f64s) -> S::f64s {
+    x * (1.0 / PIXEL) + grid.half
 }
 
 // No vectors in closures below: see `shade/run.rs`.
