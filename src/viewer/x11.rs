@@ -39,20 +39,18 @@ impl Xlib {
     fn load() -> Option<Xlib> {
         let library = load("libX11.so.6")?;
         // SAFETY: these are the signatures in X11/Xlib.h, a handler being a pointer to a function.
-        let xlib = unsafe {
-            Xlib {
+        // The pointers, and the handler that Xlib remembers, are valid as long as the library stays
+        // loaded.
+        unsafe {
+            Some(Xlib {
                 init_threads: *library.get(b"XInitThreads\0").ok()?,
                 set_io_error_handler: *library.get(b"XSetIOErrorHandler\0").ok()?,
                 open_display: *library.get(b"XOpenDisplay\0").ok()?,
                 query_extension: *library.get(b"XQueryExtension\0").ok()?,
                 next_event: *library.get(b"XNextEvent\0").ok()?,
                 close_display: *library.get(b"XCloseDisplay\0").ok()?,
-            }
-        };
-        // The pointers, and the handler that Xlib remembers, are valid as long as the library stays
-        // loaded.
-        std::mem::forget(library);
-        Some(xlib)
+            })
+        }
     }
 }
 

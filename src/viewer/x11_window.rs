@@ -49,10 +49,8 @@ impl X11Window {
             return None;
         };
         let library = load("libX11.so.6")?;
-        // SAFETY: this is the signature in X11/Xlib.h.
+        // SAFETY: this is the signature in X11/Xlib.h, and the library stays loaded.
         let get_window_attributes = unsafe { *library.get(b"XGetWindowAttributes\0").ok()? };
-        // The pointer is valid as long as the library stays loaded.
-        std::mem::forget(library);
         Some(X11Window {
             get_window_attributes,
             display: display.display?.as_ptr(),
