@@ -5,7 +5,7 @@ use std::process::Command;
 use firsthit::Stage;
 
 use super::fault;
-use super::program::Program;
+use super::program::{COMPOSE, Program};
 use super::session::Session;
 use super::xvfb::Xvfb;
 
@@ -129,6 +129,7 @@ fn too_few_files_are_one_line() {
             .env("DISPLAY", &xvfb.display)
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
+            .env("XCOMPOSEFILE", COMPOSE)
             .output()
             .unwrap();
         let message = String::from_utf8_lossy(&output.stderr);

@@ -29,6 +29,10 @@ pub fn pause(start: Instant) {
     thread::sleep((start.elapsed() / 4).clamp(shortest, longest));
 }
 
+/// A table of the sequences of keys that make other characters, without any: Xlib and xkbcommon
+/// read the locale's, which takes a sixth of a start.
+pub const COMPOSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/viewer/Compose");
+
 /// The program, running. It is killed when dropped.
 pub struct Program {
     process: Child,
@@ -46,6 +50,7 @@ impl Program {
             .env_remove("DISPLAY")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
+            .env("XCOMPOSEFILE", COMPOSE)
             .envs(environment.iter().copied())
             .current_dir(folder)
             .stdin(Stdio::null())
