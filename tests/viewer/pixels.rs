@@ -63,6 +63,7 @@ impl Pixels {
             u32::try_from(self.height).unwrap(),
         );
         encoder.set_color(png::ColorType::Rgb);
+        encoder.set_compression(png::Compression::Fastest);
         let mut writer = encoder.write_header().unwrap();
         writer.write_image_data(&self.bytes.concat()).unwrap();
     }
@@ -143,12 +144,16 @@ pub fn placed(
         let pixel = usize::try_from(pixel as i64 - start).ok()?;
         // The one that the centre of the pixel lies in.
         let texel = (2 * pixel + 1) * size / (2 * extent);
-        (pixel < extent).then_some(texel as u32)
+        (pixel < extent).then_some(texel)
     };
     let columns: Vec<_> = (0..width).map(|x| texel(x, left)).collect();
-    let shown = |row: u32, column: Option<u32>| {
-        let samples = column.and_then(|column| picture.pixel(column, row));
-        samples.map_or(BLUE, |samples| samples.map(display_byte))
+    let (pixels, _) = picture.samples().as_chunks();
+    let shown = |row: usize, column: Option<usize>| match column {
+        Some(column) => {
+            let [red, green, blue]: [f32; 3] = pixels[row * size + column];
+            [display_byte(red), display_byte(green), display_byte(blue)]
+        }
+        None => BLUE,
     };
     let mut bytes = Vec::with_capacity(width * height);
     // A row of texels is a row of pixels, many times over.
@@ -156,9 +161,9 @@ pub fn placed(
     for y in (0..height).rev() {
         let row = texel(y, bottom);
         if row != last {
-            let pixels = columns.iter();
+            let columns = columns.iter();
             line = match row {
-                Some(row) => pixels.map(|&column| shown(row, column)).collect(),
+                Some(row) => columns.map(|&column| shown(row, column)).collect(),
                 None => vec![BLUE; width],
             };
             last = row;
