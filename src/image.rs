@@ -115,8 +115,12 @@ impl Image {
 /// assert_eq!(display_byte(7.0), 255);
 /// assert_eq!(display_byte(f32::NAN), 0);
 /// ```
+#[inline]
 pub fn display_byte(sample: f32) -> u8 {
-    (sample.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
+    // From here on an f32 has no fraction: adding it rounds to an integer, ties to even, where
+    // `round_ties_even` is a call of a function.
+    const WHOLE: f32 = 8_388_608.0;
+    ((sample.clamp(0.0, 1.0) * 255.0 + WHOLE) - WHOLE) as u8
 }
 
 impl fmt::Debug for Image {
