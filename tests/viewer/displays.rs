@@ -87,16 +87,24 @@ fn egl_serves_where_the_server_has_no_glx() {
 
 #[test]
 fn the_death_of_the_server_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
     for server in SERVERS {
-        for stage in ["6", "7"] {
-            let Some(xvfb) = Xvfb::start(server) else {
-                return;
-            };
-            // Large enough that Mesa sends it to the server in parts.
+        let Some(xvfb) = Xvfb::start(server) else {
+            return;
+        };
+        // A window that rests, and one that plays. Large enough that Mesa sends it to the server in
+        // parts.
+        let mut viewers = ["6", "7"].map(|stage| {
             let arguments = ["view", "--stage", stage, "--size", "300"];
-            let mut session = Session::on(xvfb, &arguments, &[]);
-            session.crash_server();
-            let (status, errors) = session.program.ended();
+            let environment = [("DISPLAY", &*xvfb.display)];
+            Program::start(folder.path(), &arguments, &environment)
+        });
+        for viewer in &viewers {
+            viewer.line("first frame");
+        }
+        xvfb.crash();
+        for viewer in &mut viewers {
+            let (status, errors) = viewer.ended();
             assert_eq!(status.code(), Some(1), "{errors}");
             assert_eq!(errors.lines().count(), 1, "{errors}");
             assert!(errors.contains("the display went away"), "{errors}");
@@ -174,16 +182,17 @@ fn a_window_that_shows_a_wrong_pixel_is_told() {
     let Some(environment) = fault::environment("shows a wrong pixel") else {
         return;
     };
+    let folder = tempfile::tempdir().unwrap();
     for server in SERVERS {
         let Some(xvfb) = Xvfb::lent_with(server) else {
             return;
         };
         // It is looked at when some frames have been presented.
-        let arguments = ["view", "--stage", "7", "--size", "40"];
-        let mut session = Session::on(xvfb, &arguments, &environment);
-        std::thread::sleep(std::time::Duration::from_secs(2));
-        session.type_keys("q");
-        let (status, errors) = session.program.ended();
+        let arguments = ["view", "--size", "40", "--exit-after-frames", "30"];
+        let [library, fault] = environment;
+        let environment = [("DISPLAY", &*xvfb.display), library, fault];
+        let mut viewer = Program::start(folder.path(), &arguments, &environment);
+        let (status, errors) = viewer.ended();
         assert_eq!(status.code(), Some(0), "{errors}");
         assert_eq!(errors.lines().count(), 1, "{errors}");
         assert!(errors.contains("does not show what was drawn"), "{errors}");

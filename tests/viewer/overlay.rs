@@ -105,12 +105,11 @@ fn every_scale_factor_has_its_window_and_its_panel() {
         ("1.5", 450, 300, 11),
         ("2", 600, 600, 14),
     ] {
-        let screen = ["-screen", "0", "1920x1080x24"];
-        let Some(xvfb) = Xvfb::start(&screen) else {
+        let Some(xvfb) = Xvfb::lent_with(&["-screen", "0", "1920x1080x24"]) else {
             return;
         };
         let arguments = ["view", "--stage", "6", "--size", "300"];
-        let session = Session::on(xvfb, &arguments, &[("WINIT_X11_SCALE_FACTOR", scale)]);
+        let mut session = Session::on(xvfb, &arguments, &[("WINIT_X11_SCALE_FACTOR", scale)]);
         assert_eq!(session.size(), (side, side), "at scale {scale}");
         let picture = (300, Stage::Reflection, 0.0);
         session.shows(300, Stage::Reflection, 0.0);
@@ -121,6 +120,8 @@ fn every_scale_factor_has_its_window_and_its_panel() {
         session.type_keys("h");
         session.becomes(side, side);
         session.shows(300, Stage::Reflection, 0.0);
+        session.type_keys("q");
+        session.program.left();
     }
 }
 

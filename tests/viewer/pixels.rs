@@ -69,28 +69,39 @@ impl Pixels {
     }
 }
 
+/// What is expected of a width and a height, made as rarely as these change.
+pub struct Expected<F> {
+    make: F,
+    known: Option<Pixels>,
+}
+
+impl<F: Fn(usize, usize) -> Pixels> Expected<F> {
+    pub fn new(make: F) -> Expected<F> {
+        Expected { make, known: None }
+    }
+
+    pub fn of(&mut self, width: usize, height: usize) -> &Pixels {
+        let fits = |known: &Pixels| (known.width, known.height) == (width, height);
+        let known = self.known.take().filter(fits);
+        self.known
+            .insert(known.unwrap_or_else(|| (self.make)(width, height)))
+    }
+}
+
 /// Waits until what is shown, if it can be seen, is what is expected of its width and height.
 #[track_caller]
 pub fn wait_to_show(shown: impl Fn() -> Option<Pixels>, expected: impl Fn(usize, usize) -> Pixels) {
     let start = Instant::now();
-    let mut known: Option<Pixels> = None;
+    let mut expected = Expected::new(expected);
     loop {
         let shown = shown();
-        if let Some(shown) = &shown {
-            let fits = |known: &Pixels| (known.width, known.height) == (shown.width, shown.height);
-            let expected = match known.take().filter(fits) {
-                Some(known) => known,
-                None => expected(shown.width, shown.height),
-            };
-            if *shown == expected {
-                return;
-            }
-            known = Some(expected);
+        if let Some(shown) = &shown
+            && shown == expected.of(shown.width, shown.height)
+        {
+            return;
         }
         if start.elapsed() > DEADLINE {
-            let kept = shown
-                .zip(known)
-                .map(|(shown, expected)| keep(&shown, &expected));
+            let kept = shown.map(|shown| keep(&shown, expected.of(shown.width, shown.height)));
             panic!("this is not what the window shows: {kept:?}");
         }
         pause(start);

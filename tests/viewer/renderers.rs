@@ -1,42 +1,53 @@
 //! Other programs in the place of a kernel, and files that change while the viewer is seen.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use firsthit::scene::BUILTIN_TOML;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
+use tempfile::NamedTempFile;
 
 use super::WATCH;
-use super::pixels::{letterboxed, wait_to_show};
+use super::pixels::{Expected, letterboxed, wait_to_show};
 use super::program::wait_for;
 use super::session::{SPACE, Session};
 use super::xvfb::Xvfb;
 
 const SIZE: u32 = 300;
 
-/// A program that answers with pictures of one grey, each after some seconds, and then does what
-/// `after` says.
-fn flat_and(grey: f32, seconds: f64, after: &str) -> String {
-    let bytes = 4 * 3 * SIZE * SIZE;
-    let octal = grey.to_le_bytes().map(|byte| format!("\\{byte:03o}"));
-    let octal = octal.concat();
+/// A program that answers with pictures of one grey, each after what `before` says, and then does
+/// what `after` says.
+fn flat_and(grey: f32, before: &str, after: &str) -> String {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let samples = folder.join(format!("flat-{grey}.samples"));
+    // In one piece: other tests may have the same picture written or read.
+    let file = NamedTempFile::new_in(folder).unwrap();
+    let count = 3 * SIZE as usize * SIZE as usize;
+    fs::write(&file, grey.to_le_bytes().repeat(count)).unwrap();
+    file.persist(&samples).unwrap();
     format!(
         "while read line; do\n    \
-             sleep {seconds}\n    \
-             yes abcd | tr -d '\\n' | head -c {bytes} | tr abcd '{octal}'\n    \
+             {before}\n    \
+             cat '{}'\n    \
              {after}\n\
-         done; exit\n"
+         done; exit\n",
+        samples.display()
     )
 }
 
-fn flat(grey: f32, seconds: f64) -> String {
-    flat_and(grey, seconds, ":")
+fn flat(grey: f32) -> String {
+    flat_and(grey, ":", ":")
+}
+
+/// The same, each picture after some seconds.
+fn slow(grey: f32, seconds: f64) -> String {
+    flat_and(grey, &format!("sleep {seconds}"), ":")
 }
 
 /// The viewer with a shell's program of this text, which starts in no time, and its path.
-fn view(text: &str, arguments: &[&str]) -> Option<(Session, std::path::PathBuf)> {
+fn view(text: &str, arguments: &[&str]) -> Option<(Session, PathBuf)> {
     let xvfb = Xvfb::lent()?;
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!(
         "flat-{}-{:?}.sh",
@@ -55,16 +66,17 @@ fn view(text: &str, arguments: &[&str]) -> Option<(Session, std::path::PathBuf)>
 fn shows_grey(session: &Session, grey: f32) {
     let mut picture = Image::new(SIZE).unwrap();
     picture.samples_mut().fill(grey);
+    let mut expected = Expected::new(|width, height| letterboxed(&picture, width, height));
     wait_for(&format!("a grey of {grey}"), || {
         let shown = session.pixels()?;
-        let expected = letterboxed(&picture, shown.width, shown.height);
-        (shown.differences(&expected, 0..shown.height / 2) == 0).then_some(())
+        let expected = expected.of(shown.width, shown.height);
+        (shown.differences(expected, 0..shown.height / 2) == 0).then_some(())
     });
 }
 
 #[test]
 fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
-    let Some((mut session, path)) = view(&flat(0.5, 0.0), &["--stage", "6"]) else {
+    let Some((mut session, path)) = view(&flat(0.5), &["--stage", "6"]) else {
         return;
     };
     session.titled(&["firsthit — 6 Reflection — sh flat-"]);
@@ -77,7 +89,7 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     }
     session.titled(&["— sh flat-"]);
     shows_grey(&session, 0.5);
-    fs::write(&path, flat(0.25, 0.0)).unwrap();
+    fs::write(&path, flat(0.25)).unwrap();
     shows_grey(&session, 0.25);
     // One that fails leaves the last picture, and says why, until it is mended.
     fs::write(&path, "exit 3").unwrap();
@@ -86,7 +98,7 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
     session.screenshot("viewer-failed-program.png");
     // It is not started again and again.
     session.program.sleeps();
-    fs::write(&path, flat(0.75, 0.0)).unwrap();
+    fs::write(&path, flat(0.75)).unwrap();
     shows_grey(&session, 0.75);
     session.type_keys("q");
     let (status, errors) = session.program.ended();
@@ -101,13 +113,13 @@ fn a_program_is_shown_like_a_kernel_and_started_anew_when_its_file_changes() {
 
 #[test]
 fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
-    let Some((mut session, path)) = view(&flat(0.5, 0.0), &[]) else {
+    let Some((mut session, path)) = view(&flat(0.5), &[]) else {
         return;
     };
     session.titled(&[" fps"]);
     fs::write(&path, "exit 3").unwrap();
     session.titled(&["paused"]);
-    fs::write(&path, flat(0.75, 0.0)).unwrap();
+    fs::write(&path, flat(0.75)).unwrap();
     session.titled(&[" fps"]);
     shows_grey(&session, 0.75);
     // One that a key has paused stays so.
@@ -120,7 +132,7 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
         let note = shown.part([0, bottom], [width, 20]);
         (note.count([191; 3]) < width).then_some(())
     });
-    fs::write(&path, flat(0.25, 0.0)).unwrap();
+    fs::write(&path, flat(0.25)).unwrap();
     shows_grey(&session, 0.25);
     thread::sleep(WATCH);
     session.titled(&["paused"]);
@@ -132,7 +144,7 @@ fn the_animation_of_a_program_that_failed_plays_on_once_it_is_mended() {
 
 #[test]
 fn what_a_program_writes_after_its_picture_is_told_though_nothing_else_is_asked_for() {
-    let text = flat_and(0.5, 0.0, "sleep 0.1; echo done");
+    let text = flat_and(0.5, ":", "sleep 0.1; echo done");
     let Some((mut session, _)) = view(&text, &["--stage", "6"]) else {
         return;
     };
@@ -173,7 +185,7 @@ fn a_program_that_fails_from_the_start_is_shown_once_it_is_mended() {
     thread::sleep(WATCH);
     assert_eq!(session.pixels().unwrap().count([255, 60, 200]), 0);
     session.type_keys("e");
-    fs::write(&path, flat(0.5, 0.0)).unwrap();
+    fs::write(&path, flat(0.5)).unwrap();
     shows_grey(&session, 0.5);
     session.type_keys("q");
     let (status, _) = session.program.ended();
@@ -182,8 +194,8 @@ fn a_program_that_fails_from_the_start_is_shown_once_it_is_mended() {
 
 #[test]
 fn a_slow_program_keeps_nobody_waiting() {
-    let slow = flat(0.5, 3.0);
-    let Some((mut session, _)) = view(&slow, &["--stage", "6", "--kernel", "exact"]) else {
+    let Some((mut session, _)) = view(&slow(0.5, 3.0), &["--stage", "6", "--kernel", "exact"])
+    else {
         return;
     };
     session.shows(SIZE, Stage::Reflection, 0.0);
@@ -218,8 +230,7 @@ fn a_slow_program_keeps_nobody_waiting() {
 
 #[test]
 fn a_slow_program_is_said_to_be_at_it() {
-    let slow = flat(0.5, 4.0);
-    let Some((mut session, _)) = view(&slow, &["--stage", "6"]) else {
+    let Some((mut session, _)) = view(&slow(0.5, 4.0), &["--stage", "6"]) else {
         return;
     };
     shows_grey(&session, 0.5);
@@ -249,7 +260,7 @@ fn a_slow_program_is_said_to_be_at_it() {
 
 #[test]
 fn the_frame_rate_of_a_slow_program_counts_its_pictures() {
-    let Some((mut session, _)) = view(&flat(0.5, 0.8), &[]) else {
+    let Some((mut session, _)) = view(&slow(0.5, 0.8), &[]) else {
         return;
     };
     wait_for("a frame rate", || {
@@ -298,7 +309,7 @@ fn the_death_of_the_server_leaves_no_program_running() {
 #[test]
 fn the_error_view_and_the_inspector_say_what_a_program_shows() {
     // As the surface in shadow: the ambient light.
-    let Some((mut session, _)) = view(&flat(0.3, 0.0), &["--stage", "5"]) else {
+    let Some((mut session, _)) = view(&flat(0.3), &["--stage", "5"]) else {
         return;
     };
     shows_grey(&session, 0.3);
@@ -391,7 +402,7 @@ fn a_program_that_never_answers_keeps_what_mends_it_waiting_for_nothing() {
     // Black with a note, long before the program is given up.
     shows_grey(&session, 0.0);
     let start = Instant::now();
-    fs::write(&path, flat(0.5, 0.0)).unwrap();
+    fs::write(&path, flat(0.5)).unwrap();
     shows_grey(&session, 0.5);
     let time = start.elapsed();
     assert!(time < Duration::from_secs(8), "{time:?}");

@@ -16,7 +16,7 @@ use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
-use super::pixels::{Pixels, letterboxed, placed, traced, wait_to_show};
+use super::pixels::{Expected, Pixels, letterboxed, placed, traced, wait_to_show};
 use super::program::{Program, wait_for};
 use super::shared_image::SharedImage;
 use super::xvfb::Xvfb;
@@ -389,10 +389,11 @@ impl Session {
     #[track_caller]
     pub fn covers(&self, size: u32, stage: Stage, alpha: f64, percent: usize, name: &str) {
         let picture = traced(size, stage, alpha);
+        let mut uncovered = Expected::new(|width, height| letterboxed(&picture, width, height));
         wait_for(&format!("{name} over the picture"), || {
             let (width, height) = self.size();
-            let uncovered = letterboxed(&picture, width, height);
-            let covered = self.pixels()?.differences(&uncovered, 0..height);
+            let uncovered = uncovered.of(width, height);
+            let covered = self.pixels()?.differences(uncovered, 0..height);
             (100 * covered >= percent * width * height).then_some(())
         });
         self.screenshot(name);
@@ -411,13 +412,14 @@ impl Session {
         name: &str,
     ) {
         let picture = traced(size, stage, alpha);
+        let mut expected = Expected::new(|width, height| letterboxed(&picture, width, height));
         wait_for(&format!("{name} beside the picture"), || {
             let shown = self.pixels()?;
             let (whole, height) = (shown.width, shown.height);
             let panel = shown.part([width, 0], [whole, height]);
             let clean = panel.count(PANEL) * 2 > panel.bytes.len();
             let ink = panel.bytes.iter().filter(|[red, ..]| *red > 150);
-            let expected = letterboxed(&picture, width, height);
+            let expected = expected.of(width, height);
             let part = shown.part([0, 0], [width, height]);
             let pairs = part.bytes.iter().zip(&expected.bytes).enumerate();
             let wrong = pairs.filter(|(place, (shown, expected))| {
