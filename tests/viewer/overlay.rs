@@ -125,11 +125,24 @@ fn every_scale_factor_has_its_window_and_its_panel() {
     }
 }
 
+/// What is written for a while: each promise begins and ends with the picture alone.
 #[test]
-fn in_a_window_that_does_not_grow_the_panel_takes_half_and_scrolls() {
-    let Some(session) = Session::start(&["view", "--stage", "6"]) else {
+fn what_is_written_comes_and_goes() {
+    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
         return;
     };
+    session.shows(500, Stage::Reflection, 0.0);
+    information_and_the_pixel_under_the_pointer_come_and_go(&session);
+    the_pixel_under_the_pointer_is_named_while_it_moves(&session);
+    a_click_works_the_pixel_through_as_explain_does(&session);
+    what_was_saved_is_said_in_the_window_for_a_while(&session);
+    in_a_window_that_does_not_grow_the_panel_takes_half_and_scrolls(&session);
+    session.type_keys("q");
+    let [traces, uploads, _] = session.program.left();
+    assert_eq!([traces, uploads], [1, 1], "one picture is enough for all");
+}
+
+fn in_a_window_that_does_not_grow_the_panel_takes_half_and_scrolls(session: &Session) {
     let picture = (500, Stage::Reflection, 0.0);
     session.type_keys("h");
     session.becomes(500 + PANEL_WIDTH, 500);
@@ -188,11 +201,7 @@ fn esc_closes_what_is_open_then_leaves_full_screen_then_the_program() {
     session.program.left();
 }
 
-#[test]
-fn information_and_the_pixel_under_the_pointer_come_and_go() {
-    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
-        return;
-    };
+fn information_and_the_pixel_under_the_pointer_come_and_go(session: &Session) {
     let picture = (500, Stage::Reflection, 0.0);
     session.type_keys("i");
     session.point(255, 297);
@@ -201,16 +210,9 @@ fn information_and_the_pixel_under_the_pointer_come_and_go() {
     session.type_keys("i");
     session.becomes(500, 500);
     session.shows(500, Stage::Reflection, 0.0);
-    session.type_keys("q");
-    let [traces, uploads, _] = session.program.left();
-    assert_eq!([traces, uploads], [1, 1]);
 }
 
-#[test]
-fn the_pixel_under_the_pointer_is_named_while_it_moves() {
-    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
-        return;
-    };
+fn the_pixel_under_the_pointer_is_named_while_it_moves(session: &Session) {
     session.resize(700, 500);
     let picture = traced(500, Stage::Reflection, 0.0);
     let clean = letterboxed(&picture, 700, 500);
@@ -230,17 +232,11 @@ fn the_pixel_under_the_pointer_is_named_while_it_moves() {
     // Beside the picture there is no pixel to name, and none any more once the pointer has left it.
     session.point(20, 250);
     session.shows(500, Stage::Reflection, 0.0);
-    session.type_keys("q");
-    let [traces, uploads, _] = session.program.left();
-    assert_eq!([traces, uploads], [1, 1]);
+    session.resize(500, 500);
+    session.shows(500, Stage::Reflection, 0.0);
 }
 
-#[test]
-fn a_click_works_the_pixel_through_as_explain_does() {
-    let Some(mut session) = Session::start(&["view", "--stage", "6"]) else {
-        return;
-    };
-    session.shows(500, Stage::Reflection, 0.0);
+fn a_click_works_the_pixel_through_as_explain_does(session: &Session) {
     session.point(255, 499 - 202);
     session.click(LEFT_BUTTON);
     let tracer = Tracer::new(Kernel::default(), 1).unwrap();
@@ -262,16 +258,10 @@ fn a_click_works_the_pixel_through_as_explain_does() {
     session.press_ctrl(u32::from('c'));
     session.covers(500, Stage::Reflection, 0.0, 1, "viewer-nothing-to-copy.png");
     assert_eq!(session.clipboard(), text);
-    session.type_keys("q");
-    session.program.left();
+    session.shows(500, Stage::Reflection, 0.0);
 }
 
-#[test]
-fn what_was_saved_is_said_in_the_window_for_a_while() {
-    let Some(session) = Session::start(&["view", "--stage", "6"]) else {
-        return;
-    };
-    session.shows(500, Stage::Reflection, 0.0);
+fn what_was_saved_is_said_in_the_window_for_a_while(session: &Session) {
     session.type_keys("s");
     session.covers(500, Stage::Reflection, 0.0, 1, "viewer-saved.png");
     session.shows(500, Stage::Reflection, 0.0);

@@ -32,10 +32,15 @@ fn a_static_stage_is_traced_and_uploaded_once_and_then_sleeps() {
 }
 
 #[test]
-fn a_desktop_knows_the_window_by_the_name_of_the_program() {
+fn a_desktop_gets_the_name_and_the_icon_of_the_window() {
     let Some(session) = Session::start(&["view", "--stage", "1"]) else {
         return;
     };
+    a_desktop_knows_the_window_by_the_name_of_the_program(&session);
+    a_desktop_gets_a_small_picture_as_the_icon_of_the_window(&session);
+}
+
+fn a_desktop_knows_the_window_by_the_name_of_the_program(session: &Session) {
     let (class, text) = (AtomEnum::WM_CLASS, AtomEnum::STRING);
     let connection = &session.connection;
     let property = connection.get_property(false, session.window, class, text, 0, 100);
@@ -43,11 +48,7 @@ fn a_desktop_knows_the_window_by_the_name_of_the_program() {
     assert_eq!(value, b"firsthit\0firsthit\0");
 }
 
-#[test]
-fn a_desktop_gets_a_small_picture_as_the_icon_of_the_window() {
-    let Some(session) = Session::start(&["view", "--stage", "1"]) else {
-        return;
-    };
+fn a_desktop_gets_a_small_picture_as_the_icon_of_the_window(session: &Session) {
     let connection = &session.connection;
     let name = connection.intern_atom(false, b"_NET_WM_ICON").unwrap();
     let (name, kind) = (name.reply().unwrap().atom, AtomEnum::CARDINAL);
@@ -92,17 +93,32 @@ fn a_picture_that_takes_long_keeps_the_window_from_nothing() {
     );
 }
 
+/// Each promise begins with the animation playing, and all but the last end so.
 #[test]
-fn the_paused_animation_sleeps() {
-    let Some(session) = Session::start(&["view", "--size", "50"]) else {
+fn an_animation_that_is_paused_or_not_seen_rests_and_plays_on() {
+    let Some(mut session) = Session::start(&["view", "--size", "60"]) else {
         return;
     };
+    session.titled(&["fps"]);
+    the_paused_animation_sleeps(&session);
+    a_covered_window_rests_and_comes_back(&session);
+    a_window_on_another_workspace_sleeps_and_comes_back(&session);
+    a_window_made_an_icon_rests_and_comes_back(&session);
+    session.close();
+    session.program.left();
+}
+
+fn moves_on(session: &Session) {
+    let title = session.title();
+    wait_for("α to move on", || (session.title() != title).then_some(()));
+}
+
+fn the_paused_animation_sleeps(session: &Session) {
     session.press(SPACE);
     session.titled(&["paused"]);
     session.program.sleeps();
-    let title = session.title();
     session.press(SPACE);
-    wait_for("α to move on", || (session.title() != title).then_some(()));
+    moves_on(session);
 }
 
 #[test]
@@ -125,16 +141,13 @@ fn the_picture_keeps_its_aspect_in_any_window() {
         session.shows(120, Stage::Reflection, 0.0);
         session.screenshot(&format!("viewer-{width}x{height}.png"));
     }
+    a_storm_of_resizes_ends_in_the_right_picture(&session);
     session.type_keys("q");
     let [traces, uploads, _] = session.program.left();
     assert_eq!([traces, uploads], [1, 1], "a new size needs no new picture");
 }
 
-#[test]
-fn a_storm_of_resizes_ends_in_the_right_picture() {
-    let Some(mut session) = Session::start(&["view", "--stage", "6", "--size", "120"]) else {
-        return;
-    };
+fn a_storm_of_resizes_ends_in_the_right_picture(session: &Session) {
     session.type_keys("i");
     for step in 0..300_u32 {
         session.resize(1 + step * 37 % 900, 1 + step * 53 % 700);
@@ -143,9 +156,6 @@ fn a_storm_of_resizes_ends_in_the_right_picture() {
     session.resize(377, 251);
     wait_for("the size", || (session.size() == (377, 251)).then_some(()));
     session.shows(120, Stage::Reflection, 0.0);
-    session.type_keys("q");
-    let [traces, uploads, _] = session.program.left();
-    assert_eq!([traces, uploads], [1, 1]);
 }
 
 #[test]
@@ -157,17 +167,12 @@ fn a_picture_larger_than_the_monitor_opens_as_large_as_it_fits() {
     session.shows(1500, Stage::Image, 0.0);
 }
 
-#[test]
-fn a_window_made_an_icon_rests_and_comes_back() {
-    let Some(session) = Session::start(&["view", "--size", "60"]) else {
-        return;
-    };
-    session.titled(&["fps"]);
+fn a_window_made_an_icon_rests_and_comes_back(session: &Session) {
     session.iconify(true);
-    rests(&session);
-    let title = session.title();
+    rests(session);
     session.iconify(false);
-    wait_for("α to move on", || (session.title() != title).then_some(()));
+    moves_on(session);
+    // A static stage after the playing animation starts at 0.
     session.type_keys("6");
     session.shows(60, Stage::Reflection, 0.0);
     session.iconify(true);
@@ -175,43 +180,31 @@ fn a_window_made_an_icon_rests_and_comes_back() {
     session.shows(60, Stage::Reflection, 0.0);
 }
 
-#[test]
-fn a_covered_window_rests_and_comes_back() {
-    let Some(session) = Session::start(&["view", "--size", "60"]) else {
-        return;
-    };
-    session.titled(&["fps"]);
-    let cover = open_window(&session, 1280, 1024);
-    rests(&session);
-    let title = session.title();
+fn a_covered_window_rests_and_comes_back(session: &Session) {
+    let cover = open_window(session, 1280, 1024);
+    rests(session);
     session.connection.destroy_window(cover).unwrap();
     session.connection.flush().unwrap();
-    wait_for("α to move on", || (session.title() != title).then_some(()));
+    moves_on(session);
 }
 
-#[test]
-fn a_window_on_another_workspace_sleeps_and_comes_back() {
-    let Some(session) = Session::start(&["view", "--size", "60"]) else {
-        return;
-    };
-    session.titled(&["fps"]);
+fn a_window_on_another_workspace_sleeps_and_comes_back(session: &Session) {
     // A window manager's frame around the window, which it unmaps with its workspace.
-    let frame = open_window(&session, 300, 300);
+    let frame = open_window(session, 300, 300);
     let (connection, window) = (&session.connection, session.window);
     let reparented = connection.reparent_window(window, frame, 10, 10);
     reparented.unwrap().check().unwrap();
-    let moves_on = || {
-        let title = session.title();
-        wait_for("α to move on", || (session.title() != title).then_some(()));
-    };
     for _ in 0..2 {
-        moves_on();
+        moves_on(session);
         connection.unmap_window(frame).unwrap().check().unwrap();
-        rests(&session);
+        rests(session);
         session.program.sleeps();
         connection.map_window(frame).unwrap().check().unwrap();
     }
-    moves_on();
+    let reparented = connection.reparent_window(window, session.root, 0, 0);
+    reparented.unwrap().check().unwrap();
+    connection.destroy_window(frame).unwrap().check().unwrap();
+    moves_on(session);
 }
 
 /// Waits until the animation stands still although it is not paused.
