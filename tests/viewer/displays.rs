@@ -97,11 +97,11 @@ fn the_death_of_the_server_is_one_line() {
         let mut viewers = ["6", "7"].map(|stage| {
             let arguments = ["view", "--stage", stage, "--size", "300"];
             let environment = [("DISPLAY", &*xvfb.display)];
-            Program::start(folder.path(), &arguments, &environment)
-        });
-        for viewer in &viewers {
+            let viewer = Program::start(folder.path(), &arguments, &environment);
+            // Before the next one covers it.
             viewer.line("first frame");
-        }
+            viewer
+        });
         xvfb.crash();
         for viewer in &mut viewers {
             let (status, errors) = viewer.ended();
