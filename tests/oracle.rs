@@ -68,10 +68,29 @@ struct Point {
     scale: Number,
 }
 
+/// The ways that rays go: the eye's, the mirrored one, and the one to the light.
+#[derive(Clone, Copy)]
+enum Way {
+    Direct,
+    Mirrored,
+    ToLight,
+}
+
+/// The vector of each way, in the order of [`Way`].
+struct Directions([Vector; 3]);
+
+impl Directions {
+    /// What is computed of the vector of each way. What rays of one way share is computed once.
+    fn each(&self, f: impl Fn(&Vector) -> Number) -> [Number; 3] {
+        self.0.each_ref().map(f)
+    }
+}
+
 /// The points (place + t · direction)/scale, for t > 0; its line has those for every t.
 #[derive(Clone, Copy)]
 struct Ray<'a> {
     start: &'a Point,
+    way: Way,
     direction: &'a Vector,
 }
 
@@ -85,10 +104,11 @@ impl Fraction {
 }
 
 impl Point {
-    fn toward<'a>(&'a self, direction: &'a Vector) -> Ray<'a> {
+    fn toward<'a>(&'a self, way: Way, directions: &'a Directions) -> Ray<'a> {
         Ray {
             start: self,
-            direction,
+            way,
+            direction: &directions.0[way as usize],
         }
     }
 }
@@ -106,6 +126,24 @@ impl Ray<'_> {
 struct Sphere {
     center: Vector,
     radius: Number,
+    /// The square of the direction of each way.
+    squares: [Number; 3],
+}
+
+/// a, b, c and b² − a c, where the points of a line in a sphere are those with a t² + 2 b t + c ≤ 0.
+struct Quadratic<'a> {
+    a: &'a Number,
+    b: Number,
+    c: Number,
+    discriminant: Number,
+}
+
+impl Quadratic<'_> {
+    /// Whether the ray meets the sphere: its line does, and leaves it at (−b + √D)/a, which is
+    /// positive where b < 0, and otherwise where D > b².
+    fn is_ahead(&self) -> bool {
+        self.b.sign().is_lt() || self.c.sign().is_lt()
+    }
 }
 
 impl Sphere {
@@ -114,30 +152,38 @@ impl Sphere {
         sub(&point.place, &scale(&self.center, &point.scale))
     }
 
-    /// a, b, c and b² − a c, where the points of the line in the sphere are those with a t² + 2 b t
-    /// + c ≤ 0; `None` where the line misses the sphere. Touching counts.
-    fn quadratic(&self, Ray { start, direction }: Ray<'_>) -> Option<[Number; 4]> {
-        let offset = self.outward(start);
-        let radius = &self.radius * &start.scale;
-        let a = dot(direction, direction);
-        let b = dot(direction, &offset);
+    /// `None` where the line misses the sphere. Touching counts.
+    fn quadratic(&self, ray: Ray<'_>) -> Option<Quadratic<'_>> {
+        let offset = self.outward(ray.start);
+        let radius = &self.radius * &ray.start.scale;
+        let a = &self.squares[ray.way as usize];
+        let b = dot(ray.direction, &offset);
         let c = &dot(&offset, &offset) - &(&radius * &radius);
-        let discriminant = &(&b * &b) - &(&a * &c);
+        let discriminant = &(&b * &b) - &(a * &c);
         let meets = discriminant.sign().is_ge();
-        meets.then_some([a, b, c, discriminant])
+        meets.then_some(Quadratic {
+            a,
+            b,
+            c,
+            discriminant,
+        })
     }
 
-    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
-        let [a, b, _, discriminant] = self.quadratic(ray)?;
-        let t = Fraction(-&(&b + &discriminant.root()), a);
+    fn entry(&self, ray: Ray<'_>, reach: Reach) -> Option<Entry> {
+        let quadratic = self.quadratic(ray)?;
+        if reach == Reach::Ahead && !quadratic.is_ahead() {
+            return None;
+        }
+        let Quadratic {
+            a, b, discriminant, ..
+        } = quadratic;
+        let t = Fraction(-&(&b + &discriminant.root()), a.clone());
         Some(Entry { t, face: None })
     }
 
-    /// Whether the ray meets the sphere: its line does, and leaves it at (−b + √D)/a, which is
-    /// positive where b < 0, and otherwise where D > b².
     fn is_ahead(&self, ray: Ray<'_>) -> bool {
         let quadratic = self.quadratic(ray);
-        quadratic.is_some_and(|[_, b, c, _]| b.sign().is_lt() || c.sign().is_lt())
+        quadratic.is_some_and(|quadratic| quadratic.is_ahead())
     }
 }
 
@@ -145,9 +191,19 @@ impl Sphere {
 struct HalfSpace {
     normal: Vector,
     offset: Number,
+    /// How fast each way leads outward.
+    speeds: [Number; 3],
 }
 
 impl HalfSpace {
+    fn new(normal: Vector, offset: Number, directions: &Directions) -> HalfSpace {
+        HalfSpace {
+            speeds: directions.each(|direction| dot(direction, &normal)),
+            normal,
+            offset,
+        }
+    }
+
     /// Positive where the point is outside.
     fn outside(&self, point: &Point) -> Number {
         &dot(&point.place, &self.normal) - &(&point.scale * &self.offset)
@@ -159,32 +215,28 @@ impl HalfSpace {
 struct Polyhedron(Vec<HalfSpace>);
 
 impl Polyhedron {
-    fn tetrahedron(v: &[Vector; 4]) -> Polyhedron {
+    fn tetrahedron(v: &[Vector; 4], directions: &Directions) -> Polyhedron {
         let face = |k: usize| {
             let [a, b, c] = [(k + 1) % 4, (k + 2) % 4, (k + 3) % 4].map(|i| &v[i]);
             let normal = cross(&sub(b, a), &sub(c, a));
             let inward = dot(&normal, &sub(&v[k], a)).sign().is_gt();
             let normal = if inward { negative(&normal) } else { normal };
-            HalfSpace {
-                offset: dot(&normal, a),
-                normal,
-            }
+            let offset = dot(&normal, a);
+            HalfSpace::new(normal, offset, directions)
         };
         Polyhedron((0..4).map(face).collect())
     }
 
     /// The plane comes first: its t is exact at every angle, where that of a side at the same place
     /// is not.
-    fn square(height: &Number, half_width: &Number) -> Polyhedron {
+    fn square(height: &Number, half_width: &Number, directions: &Directions) -> Polyhedron {
         let slabs = [
             (DVec3::Y, height, &-height),
             (DVec3::X, half_width, half_width),
             (DVec3::Z, half_width, half_width),
         ];
-        let half_space = |normal, offset: &Number| HalfSpace {
-            normal: exact(normal),
-            offset: offset.clone(),
-        };
+        let half_space =
+            |normal, offset: &Number| HalfSpace::new(exact(normal), offset.clone(), directions);
         let sides = |(n, high, low)| [half_space(n, high), half_space(-n, low)];
         Polyhedron(slabs.into_iter().flat_map(sides).collect())
     }
@@ -195,15 +247,15 @@ impl Polyhedron {
         let (mut entry, mut left): (Option<Entry>, _) = (None, Vec::new());
         for (number, side) in self.0.iter().enumerate() {
             // f + g t ≤ 0 within.
-            let (f, g) = (side.outside(ray.start), dot(ray.direction, &side.normal));
+            let (f, g) = (side.outside(ray.start), &side.speeds[ray.way as usize]);
             match g.sign() {
                 Ordering::Less => {
-                    let (t, face) = (Fraction(f, -&g), Some(number as u8));
+                    let (t, face) = (Fraction(f, -g), Some(number as u8));
                     if entry.as_ref().is_none_or(|last| last.t.less(&t)) {
                         entry = Some(Entry { t, face });
                     }
                 }
-                Ordering::Greater => left.push(Fraction(-&f, g)),
+                Ordering::Greater => left.push(Fraction(-&f, g.clone())),
                 Ordering::Equal if f.sign().is_gt() => return None,
                 Ordering::Equal => {}
             }
@@ -212,15 +264,20 @@ impl Polyhedron {
         met.filter(|(entry, left)| left.iter().all(|t| !t.less(&entry.t)))
     }
 
-    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
-        self.meet(ray).map(|(entry, _)| entry)
+    fn entry(&self, ray: Ray<'_>, reach: Reach) -> Option<Entry> {
+        let met = self.meet(ray);
+        let met = met.filter(|(_, left)| reach == Reach::Line || is_ahead(left));
+        met.map(|(entry, _)| entry)
     }
 
-    /// Whether the ray meets it at some t > 0.
     fn is_ahead(&self, ray: Ray<'_>) -> bool {
-        let met = self.meet(ray);
-        met.is_some_and(|(_, left)| left.iter().all(|t| t.0.sign().is_gt()))
+        self.meet(ray).is_some_and(|(_, left)| is_ahead(&left))
     }
+}
+
+/// Whether a ray meets what its line leaves there at some t > 0.
+fn is_ahead(left: &[Fraction]) -> bool {
+    left.iter().all(|t| t.0.sign().is_gt())
 }
 
 enum Shape {
@@ -239,12 +296,20 @@ struct Entry {
     face: Option<u8>,
 }
 
+/// How much of a line is asked about.
+#[derive(Clone, Copy, PartialEq)]
+enum Reach {
+    Line,
+    /// What is met at some t > 0.
+    Ahead,
+}
+
 impl Solid {
     /// Where the line of a ray enters it.
-    fn entry(&self, ray: Ray<'_>) -> Option<Entry> {
+    fn entry(&self, ray: Ray<'_>, reach: Reach) -> Option<Entry> {
         match &self.shape {
-            Shape::Sphere(sphere) => sphere.entry(ray),
-            Shape::Tetrahedron(faces) => faces.entry(ray),
+            Shape::Sphere(sphere) => sphere.entry(ray, reach),
+            Shape::Tetrahedron(faces) => faces.entry(ray, reach),
         }
     }
 
@@ -274,9 +339,9 @@ pub(crate) struct Oracle<'a> {
     cos: Number,
     solids: Vec<Solid>,
     square: Option<Polyhedron>,
+    directions: Directions,
     direct: View,
     mirrored: View,
-    to_light: Vector,
     /// l.
     light: Vector,
     background: Vector,
@@ -288,20 +353,21 @@ pub(crate) struct Oracle<'a> {
 
 /// What is the same wherever one looks in one direction.
 struct View {
-    looking: Vector,
+    way: Way,
     /// h = (v + l)/|v + l|; `None` where v + l = 0.
     halfway: Option<Vector>,
 }
 
 impl View {
-    fn new(looking: Vector, to_light: &Vector, bits: usize) -> View {
-        let across = cross(&looking, to_light);
+    fn new(way: Way, directions: &Directions, bits: usize) -> View {
+        let [looking, to_light] = [way, Way::ToLight].map(|way| &directions.0[way as usize]);
+        let across = cross(looking, to_light);
         let is_parallel = across.iter().all(|x| x.sign().is_eq());
-        let is_opposite = is_parallel && dot(&looking, to_light).sign().is_gt();
-        let sum = || sub(&unit(to_light, bits), &unit(&looking, bits));
+        let is_opposite = is_parallel && dot(looking, to_light).sign().is_gt();
+        let sum = || sub(&unit(to_light, bits), &unit(looking, bits));
         View {
+            way,
             halfway: (!is_opposite).then(|| unit(&sum(), bits)),
-            looking,
         }
     }
 }
@@ -315,6 +381,20 @@ struct Sight {
     entries: Vec<OnceCell<Option<Entry>>>,
     /// The same of the surface.
     surface_entry: OnceCell<Option<Entry>>,
+    /// The point of the surface there, and whether it is in shadow.
+    on_surface: OnceCell<(Point, bool)>,
+    /// The point of the first of all solids: they all take part where there is light.
+    on_solid: OnceCell<Lighting>,
+}
+
+/// A point of a solid, and what falls on it.
+struct Lighting {
+    point: Point,
+    /// Outward, of any length.
+    normal: Vector,
+    in_shadow: OnceCell<bool>,
+    /// Equation 4-1 in the light.
+    lit: OnceCell<Vector>,
 }
 
 impl<'a> Oracle<'a> {
@@ -326,23 +406,30 @@ impl<'a> Oracle<'a> {
         let unit_length = Number::exact(3.0 * f64::from(size));
         let length = |value: f64| &Number::exact(value) * &unit_length;
         let place = |p: DVec3| p.to_array().map(length);
+        let [x, z] = [&sin, &cos].map(|component| &Number::exact(-10.0) * component);
+        let looking = |y: f64| [x.clone(), Number::exact(y), z.clone()];
+        let to_light = exact(-scene.light().direction);
+        let light_unit = unit(&to_light, bits);
+        let directions = Directions([looking(-3.0), looking(3.0), to_light]);
         let spheres = scene.spheres().iter().map(|sphere| Solid {
             shape: Shape::Sphere(Box::new(Sphere {
                 center: place(sphere.center),
                 radius: length(sphere.radius),
+                squares: directions.each(|direction| dot(direction, direction)),
             })),
             color: exact(sphere.color),
         });
         let tetrahedra = scene.tetrahedra().iter().map(|tetrahedron| Solid {
-            shape: Shape::Tetrahedron(Polyhedron::tetrahedron(&tetrahedron.vertices.map(place))),
+            shape: Shape::Tetrahedron(Polyhedron::tetrahedron(
+                &tetrahedron.vertices.map(place),
+                &directions,
+            )),
             color: exact(tetrahedron.color),
         });
         let square = scene.surface().map(|surface| {
-            Polyhedron::square(&length(surface.height), &length(surface.half_width))
+            let [height, half_width] = [surface.height, surface.half_width].map(length);
+            Polyhedron::square(&height, &half_width, &directions)
         });
-        let [x, z] = [&sin, &cos].map(|component| &Number::exact(-10.0) * component);
-        let to_light = exact(-scene.light().direction);
-        let view = |y: f64| View::new([x.clone(), Number::exact(y), z.clone()], &to_light, bits);
         let (light, material) = (scene.light(), scene.material());
         let product = |k: DVec3, intensity: DVec3| zip(&exact(k), &exact(intensity), |k, i| k * i);
         Oracle {
@@ -351,10 +438,10 @@ impl<'a> Oracle<'a> {
             bits,
             solids: spheres.chain(tetrahedra).collect(),
             square,
-            direct: view(-3.0),
-            mirrored: view(3.0),
-            light: unit(&to_light, bits),
-            to_light,
+            direct: View::new(Way::Direct, &directions, bits),
+            mirrored: View::new(Way::Mirrored, &directions, bits),
+            light: light_unit,
+            directions,
             background: exact(scene.background()),
             ambient: product(material.ambient, light.ambient_intensity),
             diffuse: product(material.diffuse, light.intensity),
@@ -415,6 +502,8 @@ impl<'a> Oracle<'a> {
             },
             entries: self.solids.iter().map(|_| OnceCell::new()).collect(),
             surface_entry: OnceCell::new(),
+            on_surface: OnceCell::new(),
+            on_solid: OnceCell::new(),
         }
     }
 
@@ -436,11 +525,12 @@ impl<'a> Oracle<'a> {
             Stage::Tetrahedron => matches!(solid.shape, Shape::Tetrahedron(_)),
             _ => true,
         };
-        let ray = sight.eye.toward(&self.direct.looking);
+        let ray = self.ray(&sight.eye, Way::Direct);
         let mut first: Option<(usize, &Entry)> = None;
         for (index, solid) in self.solids.iter().enumerate() {
             if takes_part(solid)
-                && let Some(entry) = sight.entries[index].get_or_init(|| solid.entry(ray))
+                && let Some(entry) =
+                    sight.entries[index].get_or_init(|| solid.entry(ray, Reach::Line))
                 && first.is_none_or(|(_, other)| entry.t.less(&other.t))
             {
                 first = Some((index, entry));
@@ -449,32 +539,52 @@ impl<'a> Oracle<'a> {
 
         if stage >= Stage::Shadow
             && let (Some(surface), Some(square)) = (self.scene.surface(), &self.square)
-            && let Some(entry) = sight.surface_entry.get_or_init(|| square.entry(ray))
+            && let Some(entry) = sight
+                .surface_entry
+                .get_or_init(|| square.entry(ray, Reach::Line))
             && first.is_none_or(|(_, other)| entry.t.less(&other.t))
         {
-            return self.surface_at(stage, surface, &ray.at(&entry.t));
+            let on_surface = sight.on_surface.get_or_init(|| {
+                let point = ray.at(&entry.t);
+                let in_shadow = self.is_shadowed(&point, None);
+                (point, in_shadow)
+            });
+            return self.surface_at(stage, surface, on_surface);
         }
         match first {
             None => (Decision::Background, self.background.clone()),
             Some((index, entry)) => {
-                let (seen, color) = self.shade(stage, (index, entry), &sight.eye, &self.direct);
+                let met = (index, entry, &sight.on_solid);
+                let (seen, color) = self.shade(stage, met, &sight.eye, &self.direct);
                 (Decision::Solid(seen), color)
             }
         }
     }
 
+    fn ray<'r>(&'r self, start: &'r Point, way: Way) -> Ray<'r> {
+        start.toward(way, &self.directions)
+    }
+
+    fn to_light(&self) -> &Vector {
+        &self.directions.0[Way::ToLight as usize]
+    }
+
     /// What the surface shows at a point of it.
-    fn surface_at(&self, stage: Stage, surface: &Surface, point: &Point) -> (Decision, Vector) {
-        if self.is_shadowed(point, None) {
+    fn surface_at(
+        &self,
+        stage: Stage,
+        surface: &Surface,
+        (point, in_shadow): &(Point, bool),
+    ) -> (Decision, Vector) {
+        if *in_shadow {
             return (Decision::SurfaceInShadow, self.ambient.clone());
         }
-        let reflected = point.toward(&self.mirrored.looking);
+        let reflected = self.ray(point, Way::Mirrored);
         let mut first: Option<(usize, Entry)> = None;
         for (index, solid) in self.solids.iter().enumerate() {
             // What the ray starts in it meets there, at t = 0.
             if stage >= Stage::Reflection
-                && solid.is_ahead(reflected)
-                && let Some(entry) = solid.entry(reflected)
+                && let Some(entry) = solid.entry(reflected, Reach::Ahead)
                 && first
                     .as_ref()
                     .is_none_or(|(_, other)| other.t.0.sign().is_gt() && entry.t.less(&other.t))
@@ -485,7 +595,8 @@ impl<'a> Oracle<'a> {
         match first {
             None => (Decision::Surface, exact(surface.color)),
             Some((index, entry)) => {
-                let (seen, color) = self.shade(stage, (index, &entry), point, &self.mirrored);
+                let met = (index, &entry, &OnceCell::new());
+                let (seen, color) = self.shade(stage, met, point, &self.mirrored);
                 let reflectance = Number::exact(surface.reflectance);
                 (Decision::Mirrored(seen), scale(&color, &reflectance))
             }
@@ -494,7 +605,7 @@ impl<'a> Oracle<'a> {
 
     /// Whether any solid but one hides the light from a point.
     fn is_shadowed(&self, point: &Point, besides: Option<usize>) -> bool {
-        let to_light = point.toward(&self.to_light);
+        let to_light = self.ray(point, Way::ToLight);
         let mut solids = (0..).zip(&self.solids);
         solids.any(|(index, solid)| Some(index) != besides && solid.is_ahead(to_light))
     }
@@ -503,7 +614,7 @@ impl<'a> Oracle<'a> {
     fn shade(
         &self,
         stage: Stage,
-        (index, entry): (usize, &Entry),
+        (index, entry, lighting): (usize, &Entry, &OnceCell<Lighting>),
         start: &Point,
         view: &View,
     ) -> (Seen, Vector) {
@@ -516,26 +627,41 @@ impl<'a> Oracle<'a> {
         if stage < Stage::Shading {
             return (seen(false), solid.color.clone());
         }
-        let point = start.toward(&view.looking).at(&entry.t);
-        let normal = solid.normal(entry.face, &point);
-        let by_surface = |square: &Polyhedron| square.is_ahead(point.toward(&self.to_light));
-        let in_shadow = stage >= Stage::Shadow
-            && (dot(&normal, &self.to_light).sign().is_le()
-                || self.is_shadowed(&point, Some(index))
-                || self.square.as_ref().is_some_and(by_surface));
-        let color = if in_shadow {
-            zip(&solid.color, &self.ambient, |c, l| c * l)
+        let lighting = lighting.get_or_init(|| {
+            let point = self.ray(start, view.way).at(&entry.t);
+            Lighting {
+                normal: solid.normal(entry.face, &point),
+                point,
+                in_shadow: OnceCell::new(),
+                lit: OnceCell::new(),
+            }
+        });
+        let in_shadow = stage >= Stage::Shadow && self.is_in_shadow(index, lighting);
+        let light = if in_shadow {
+            &self.ambient
         } else {
-            zip(&solid.color, &self.lit(&normal, view), |c, l| c * l)
+            let lit = || self.lit(&lighting.normal, view);
+            lighting.lit.get_or_init(lit)
         };
-        (seen(in_shadow), color)
+        (seen(in_shadow), zip(&solid.color, light, |c, l| c * l))
+    }
+
+    /// Whether a point of a solid is in shadow.
+    fn is_in_shadow(&self, solid: usize, lighting: &Lighting) -> bool {
+        let Lighting { point, normal, .. } = lighting;
+        let by_surface = |square: &Polyhedron| square.is_ahead(self.ray(point, Way::ToLight));
+        *lighting.in_shadow.get_or_init(|| {
+            dot(normal, self.to_light()).sign().is_le()
+                || self.is_shadowed(point, Some(solid))
+                || self.square.as_ref().is_some_and(by_surface)
+        })
     }
 
     /// Equation 4-1 in the light.
     fn lit(&self, normal: &Vector, view: &View) -> Vector {
         let n = unit(normal, self.bits);
         let mut sum = self.ambient.clone();
-        if dot(normal, &self.to_light).sign().is_gt() {
+        if dot(normal, self.to_light()).sign().is_gt() {
             sum = add(&sum, &scale(&self.diffuse, &dot(&n, &self.light)));
         }
         if let Some(halfway) = &view.halfway {

@@ -176,7 +176,7 @@ impl Mul for &Number {
     fn mul(self, other: &Number) -> Number {
         let p = &self.p * &other.p;
         match (&self.root, &other.root) {
-            (None, None) => Number::new(p, None),
+            (None, None) => Number { p, root: None },
             (Some(root), None) => Number::new(p, Some(root.times(&other.p))),
             (None, Some(root)) => Number::new(p, Some(root.times(&self.p))),
             (Some(one), Some(two)) => {
