@@ -1,18 +1,13 @@
 //! Promise: an explanation is of the pixel that is traced, with every kernel, in every stage.
 
-use firsthit::image::display_byte;
 use firsthit::tracer::{Decision, TraceError};
 use firsthit::{Kernel, Scene, Stage, Tracer};
 
-use crate::helpers::{compiled, failed, printed, program, succeeded, trace_with_decisions};
+use crate::helpers::{
+    compiled, failed, line, printed, program, says_what_is_shown, succeeded, trace_with_decisions,
+};
 
 const SIZE: u32 = 48;
-
-/// What follows `about` on its line.
-fn line<'a>(text: &'a str, about: &str) -> Option<&'a str> {
-    let mut lines = text.lines().filter(|line| line.starts_with(about));
-    lines.next().map(|line| line[about.len()..].trim())
-}
 
 #[test]
 fn it_ends_in_the_samples_and_bytes_of_the_picture() {
@@ -29,56 +24,14 @@ fn it_ends_in_the_samples_and_bytes_of_the_picture() {
             for index in (0..SIZE * SIZE).step_by(7) {
                 let pixel = (index % SIZE, index / SIZE);
                 let text = tracer.explain(&scene, stage, 0.6, SIZE, pixel).unwrap();
-                let [r, g, b] = image.pixel(pixel.0, pixel.1).unwrap();
-                assert_eq!(
-                    line(&text, "samples"),
-                    Some(&*format!("{r:?} {g:?} {b:?}")),
-                    "{text}"
+                let shown = (
+                    decisions[index as usize],
+                    image.pixel(pixel.0, pixel.1).unwrap(),
                 );
-                let [r, g, b] = [r, g, b].map(display_byte);
-                assert_eq!(
-                    line(&text, "bytes"),
-                    Some(&*format!("{r} {g} {b}")),
-                    "{text}"
-                );
-                says_what_was_decided(decisions[index as usize], &text);
+                says_what_is_shown(&text, (&scene, stage), shown);
             }
         }
     }
-}
-
-/// The words of the explanation against the decision.
-fn says_what_was_decided(decision: Decision, text: &str) {
-    let shown: Vec<&str> = text
-        .lines()
-        .filter(|line| line.starts_with("shows"))
-        .collect();
-    let (last, in_shadow) = match decision {
-        Decision::Quadrant(_) => return assert!(line(text, "quadrant").is_some(), "{text}"),
-        Decision::Background => ("the background", false),
-        Decision::Surface => ("the surface", false),
-        Decision::SurfaceInShadow => ("the surface", true),
-        Decision::Solid(seen) | Decision::Mirrored(seen) => {
-            let name = if seen.solid < 2 {
-                "sphere"
-            } else {
-                "tetrahedron"
-            };
-            (name, seen.in_shadow)
-        }
-    };
-    assert!(
-        shown.last().unwrap()["shows".len()..]
-            .trim()
-            .starts_with(last),
-        "{text}"
-    );
-    assert_eq!(text.contains("\nin shadow"), in_shadow, "{text}");
-    assert_eq!(
-        text.contains("mirrored\n"),
-        matches!(decision, Decision::Mirrored(_)),
-        "{text}"
-    );
 }
 
 #[test]

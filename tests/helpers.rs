@@ -1,5 +1,6 @@
 //! What several promises need.
 
+mod explanation;
 #[cfg(all(feature = "program", target_os = "linux"))]
 mod fault;
 #[cfg(feature = "program")]
@@ -22,6 +23,9 @@ use firsthit::image::Raster;
 use firsthit::tracer::Decision;
 use firsthit::{Image, Kernel, Scene, Stage, Tracer};
 
+#[cfg(feature = "program")]
+pub(crate) use explanation::line;
+pub(crate) use explanation::says_what_is_shown;
 #[cfg(all(feature = "program", target_os = "linux"))]
 pub(crate) use fault::with_fault;
 #[cfg(all(feature = "program", target_os = "linux"))]
