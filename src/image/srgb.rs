@@ -112,10 +112,10 @@ mod tests {
     use super::*;
     use crate::random::Random;
 
-    /// The curve above the line in 200 bits, by exponential and logarithm.
+    /// The curve above the line in 120 bits, by exponential and logarithm.
     fn computed(sample: f32) -> f32 {
         let exact = |x: f64| FBig::<HalfEven>::try_from(x).unwrap_or(FBig::ZERO);
-        let wide = |x: f64| exact(x).with_precision(200).value();
+        let wide = |x: f64| exact(x).with_precision(120).value();
         let t = (wide(sample.into()) * wide(200.0) + wide(11.0)) / wide(211.0);
         (t.ln() * wide(12.0) / wide(5.0)).exp().to_f32().value()
     }
@@ -127,7 +127,7 @@ mod tests {
     fn the_curve_is_rounded_correctly() {
         let mut random = Random::new();
         let mut samples = vec![0.04045, 0.5, 1.0, 1.0_f32.next_up(), 2.0, 255.0, 1e10, 1e16];
-        samples.extend((0..2000).map(|_| 0.04045 + 0.96 * random.fraction() as f32));
+        samples.extend((0..700).map(|_| 0.04045 + 0.96 * random.fraction() as f32));
         samples.extend(HARD);
         samples.retain(|&sample| f64::from(sample) > LINE);
         for sample in samples {

@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_series_encloses_the_truth() {
-        let angles = (0..4000).map(|i| f64::from(i) * f64::from(i) * 2.5e-4 + 1e-7);
+        let angles = (0..2000).map(|i| f64::from(i) * f64::from(i) * 1e-3 + 1e-7);
         let frames = (1..21).map(crate::camera::frame_angle);
         for alpha in angles.chain(frames).chain([FRAC_PI_2, PI, 355.0, 710.0]) {
             let [sin, cos] = sin_cos_with(alpha, 200);

@@ -92,7 +92,7 @@ fn check_spheres(
             }
             for column in (certain[0].ceil().max(0.0) as u32..SIZE)
                 .take_while(|column| f64::from(*column) < certain[1])
-                .step_by(11)
+                .step_by(47)
             {
                 let x = grid.coordinate(column);
                 let at = Rectangle {
