@@ -22,7 +22,8 @@ const ANGLES: [f64; 4] = [0.0, 0.6, 2.1, -4.2];
 #[test]
 fn a_kernel_earns_none_but_for_what_the_document_gets_wrong() {
     let scene = Scene::builtin();
-    for kernel in Kernel::ALL {
+    // The pictures of reference are those of exact, bit for bit.
+    for kernel in [Kernel::Exact, Kernel::Fast, Kernel::Double, Kernel::Listing] {
         for stage in Stage::ALL {
             for alpha in ANGLES {
                 let image = trace(kernel, &scene, stage, alpha, 100);
@@ -119,8 +120,7 @@ fn a_picture_that_is_made_otherwise_of_the_true_one_earns_its_hint() {
 #[test]
 fn a_tracer_with_a_mistake_earns_the_hint_at_it() {
     const SIZE: u32 = 90;
-    let folder = tempfile::tempdir().unwrap();
-    let Some(command) = compiled(&folder, "correct.c", &[]) else {
+    let Some(command) = compiled("correct.c") else {
         return;
     };
     for (mistake, hints_expected) in [

@@ -37,13 +37,13 @@ fn is_empty(folder: &TempDir) -> bool {
     folder.path().read_dir().unwrap().next().is_none()
 }
 
-/// The errors of a kernel over the first two frames of the built-in scene at N = 24, counted
+/// The errors of a kernel over the first two frames of the built-in scene at N = 16, counted
 /// without the report.
 fn counted(kernel: Kernel) -> (u64, u64) {
     let (mut wrong, mut misrounded) = (0, 0);
     for alpha in [0, 1].map(frame_angle) {
         let trace =
-            |kernel| trace_with_decisions(kernel, &Scene::builtin(), Stage::Reflection, alpha, 24);
+            |kernel| trace_with_decisions(kernel, &Scene::builtin(), Stage::Reflection, alpha, 16);
         let (image, decisions) = trace(kernel);
         let (truth, true_decisions) = trace(Kernel::Exact);
         wrong += decisions
@@ -65,7 +65,7 @@ fn the_json_is_as_promised() {
     let folder = tempfile::tempdir().unwrap();
     report(
         &folder,
-        &format!("--size 24 --frames 0..1 --threads 2 --json r.json {ALL}"),
+        &format!("--size 16 --frames 0..1 --threads 2 --json r.json {ALL}"),
     );
     let report = json(&folder, "r.json");
     assert_eq!(report["version"], 1);
@@ -93,7 +93,7 @@ fn the_json_is_as_promised() {
         assert_eq!(row["scene"], "builtin");
         assert_eq!(
             (&row["stage"], &row["size"], &row["frames"]),
-            (&6.into(), &24.into(), &2.into())
+            (&6.into(), &16.into(), &2.into())
         );
         assert!(row["simd"].is_string());
         for key in ["ms", "fill_ratio", "retained_fill_ratio"] {
@@ -201,7 +201,7 @@ fn scalings(report: &Value) -> Vec<Scaling> {
         assert!(row["samples"].as_u64() >= Some(3), "{row}");
         assert_eq!(
             (&row["stage"], &row["size"], &row["frames"]),
-            (&5.into(), &16.into(), &2.into())
+            (&5.into(), &8.into(), &2.into())
         );
         Scaling {
             name: (
@@ -217,7 +217,7 @@ fn scalings(report: &Value) -> Vec<Scaling> {
     scalings.collect()
 }
 
-const CROWDS: &str = "--crowd 90,3,90 --size 16 --frames 0..1 --threads 2 --stage 5 --stage 1 \
+const CROWDS: &str = "--crowd 90,3,90 --size 8 --frames 0..1 --threads 2 --stage 5 --stage 1 \
                       --kernel listing --kernel double --kernel exact";
 
 /// A report on some crowds.
@@ -461,7 +461,7 @@ fn hard_scenes_join_the_built_in_one() {
     let folder = tempfile::tempdir().unwrap();
     report(
         &folder,
-        "--hard --size 2 --frames 0..0 --threads 1 --kernel double --json r.json --plot p.svg",
+        "--hard --stage 2 --size 2 --frames 0..0 --threads 1 --kernel double --json r.json --plot p.svg",
     );
     let report = json(&folder, "r.json");
     let rows = report["rows"].as_array().unwrap();
@@ -651,14 +651,14 @@ fn what_a_program_writes_after_its_last_picture_is_told_and_so_are_two_of_one_na
 #[test]
 fn the_documents_own_code_earns_a_hint_at_its_slip() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(homework) = helpers::compiled(&folder, "homework.c", &[]) else {
+    let Some(homework) = helpers::compiled("homework.c") else {
         return;
     };
     let words = "--stage 4 --json a.json --max-wrong 9999";
     let output = report_on(&homework, &folder, words).output().unwrap();
     let text = helpers::succeeded(&output, "report on homework.c");
     let hint = "light falls on the wrong side of solids: in n·l, l is the way toward the light";
-    let line = format!("sample, builtin, stage 4: {hint}\n");
+    let line = format!("homework, builtin, stage 4: {hint}\n");
     assert!(text.contains(&line), "{text}");
     let json = json(&folder, "a.json");
     assert_eq!(json["renderers"][0]["hints"][0], hint);
