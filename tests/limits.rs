@@ -65,7 +65,7 @@ fn memory_that_is_refused_is_one_line() {
         "capture --stage 6 --size 500 --through none -o a.png",
         "capture --stage 7 --size 500 --frames 0..1 --through none -o a.apng",
         "compare one.exr one.png -o a.png",
-        "report --size 500 --frames 0..0 --kernel double --threads 1 --json a.json",
+        "report --stage 1 --size 500 --frames 0..0 --kernel double --threads 1 --json a.json",
         &format!("capture --stage 6 --size 500 --scene {crowd} --through none -o a.exr"),
     ] {
         let (mut refused, mut done) = (0, 0);

@@ -15,19 +15,19 @@ use crate::helpers::{Random, failed, program, program_after, succeeded, with_fau
 /// Every kind of output: what writes it, and the names that it gets.
 const OUTPUTS: [(&str, &[&str]); 7] = [
     (
-        "capture --stage 6 --size 300 --through none -o a.png",
+        "capture --stage 6 --size 200 --through none -o a.png",
         &["a.png"],
     ),
     (
-        "capture --stage 6 --size 300 --through none -o a.exr",
+        "capture --stage 6 --size 200 --through none -o a.exr",
         &["a.exr"],
     ),
     (
-        "capture --stage 7 --size 200 --frames 0..3 --through none -o a.apng",
+        "capture --stage 7 --size 120 --frames 0..3 --through none -o a.apng",
         &["a.apng"],
     ),
     (
-        "capture --stage 7 --size 200 --frames 0..3 --through none -o a{}.exr",
+        "capture --stage 7 --size 120 --frames 0..3 --through none -o a{}.exr",
         &["a0.exr", "a1.exr", "a2.exr", "a3.exr"],
     ),
     ("compare one.exr other.exr -o a.png", &["a.png"]),
@@ -45,7 +45,7 @@ const OUTPUTS: [(&str, &[&str]); 7] = [
 static COMPARED: LazyLock<[(&str, Vec<u8>); 2]> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     [("one.exr", 0), ("other.exr", 4)].map(|(name, frame)| {
-        let line = format!("capture --stage 6 --size 200 --frame {frame} --through none -o {name}");
+        let line = format!("capture --stage 6 --size 120 --frame {frame} --through none -o {name}");
         let output = program(&folder, &line).output().unwrap();
         assert_eq!(succeeded(&output, &line), "");
         (name, fs::read(folder.path().join(name)).unwrap())
@@ -227,7 +227,7 @@ fn a_signal_ends_the_program_as_it_ends_any() {
     for signal in caught() {
         let line = "capture --stage 7 --size 500 --frames 0..9999 --through none -o a.apng";
         let mut child = start(&folder, line, "", ":").unwrap();
-        thread::sleep(Duration::from_millis(100));
+        thread::sleep(Duration::from_millis(30));
         kill_process(Pid::from_child(&child), signal).unwrap();
         assert_eq!(child.wait().unwrap().signal(), Some(signal.as_raw()));
     }
