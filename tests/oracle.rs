@@ -54,6 +54,16 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
+/// A colour that is given, in samples.
+fn constant(color: DVec3) -> [f32; 3] {
+    color.to_array().map(|channel| channel as f32)
+}
+
+/// A colour that is computed, in samples.
+fn samples(color: &Vector) -> [f32; 3] {
+    color.each_ref().map(Number::to_sample)
+}
+
 /// The unit vector, in `bits` bits.
 fn unit(a: &Vector, bits: usize) -> Vector {
     let a = a.each_ref().map(|a| a.limited(bits));
@@ -344,7 +354,7 @@ pub(crate) struct Oracle<'a> {
     mirrored: View,
     /// l.
     light: Vector,
-    background: Vector,
+    background: [f32; 3],
     /// The light's intensities times the material's coefficients.
     ambient: Vector,
     diffuse: Vector,
@@ -442,7 +452,7 @@ impl<'a> Oracle<'a> {
             mirrored: View::new(Way::Mirrored, &directions, bits),
             light: light_unit,
             directions,
-            background: exact(scene.background()),
+            background: constant(scene.background()),
             ambient: product(material.ambient, light.ambient_intensity),
             diffuse: product(material.diffuse, light.intensity),
             specular: product(material.specular, light.intensity),
@@ -477,10 +487,7 @@ impl<'a> Oracle<'a> {
         row: u32,
     ) -> [(Decision, [f32; 3]); COUNT] {
         let sight = self.sight(column, row);
-        stages.map(|stage| {
-            let (decision, color) = self.evaluate(stage, &sight);
-            (decision, color.each_ref().map(Number::to_sample))
-        })
+        stages.map(|stage| self.evaluate(stage, &sight))
     }
 
     fn sight(&self, column: u32, row: u32) -> Sight {
@@ -507,7 +514,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    fn evaluate(&self, stage: Stage, sight: &Sight) -> (Decision, Vector) {
+    fn evaluate(&self, stage: Stage, sight: &Sight) -> (Decision, [f32; 3]) {
         let n = f64::from(self.size);
         if stage == Stage::Image {
             let (x, y, middle) = (f64::from(sight.column), f64::from(sight.row), n / 2.0);
@@ -517,7 +524,7 @@ impl<'a> Oracle<'a> {
                 () if x >= middle && y <= middle => (2, [0.3, 0.0, 0.3]),
                 () => (3, [0.0; 3]),
             };
-            return (Decision::Quadrant(quadrant), color.map(Number::exact));
+            return (Decision::Quadrant(quadrant), color);
         }
 
         let takes_part = |solid: &Solid| match stage {
@@ -552,11 +559,11 @@ impl<'a> Oracle<'a> {
             return self.surface_at(stage, surface, on_surface);
         }
         match first {
-            None => (Decision::Background, self.background.clone()),
+            None => (Decision::Background, self.background),
             Some((index, entry)) => {
                 let met = (index, entry, &sight.on_solid);
                 let (seen, color) = self.shade(stage, met, &sight.eye, &self.direct);
-                (Decision::Solid(seen), color)
+                (Decision::Solid(seen), samples(&color))
             }
         }
     }
@@ -575,9 +582,9 @@ impl<'a> Oracle<'a> {
         stage: Stage,
         surface: &Surface,
         (point, in_shadow): &(Point, bool),
-    ) -> (Decision, Vector) {
+    ) -> (Decision, [f32; 3]) {
         if *in_shadow {
-            return (Decision::SurfaceInShadow, self.ambient.clone());
+            return (Decision::SurfaceInShadow, samples(&self.ambient));
         }
         let reflected = self.ray(point, Way::Mirrored);
         let mut first: Option<(usize, Entry)> = None;
@@ -593,12 +600,15 @@ impl<'a> Oracle<'a> {
             }
         }
         match first {
-            None => (Decision::Surface, exact(surface.color)),
+            None => (Decision::Surface, constant(surface.color)),
             Some((index, entry)) => {
                 let met = (index, &entry, &OnceCell::new());
                 let (seen, color) = self.shade(stage, met, point, &self.mirrored);
                 let reflectance = Number::exact(surface.reflectance);
-                (Decision::Mirrored(seen), scale(&color, &reflectance))
+                (
+                    Decision::Mirrored(seen),
+                    samples(&scale(&color, &reflectance)),
+                )
             }
         }
     }
