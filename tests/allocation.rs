@@ -53,7 +53,7 @@ fn a_frame_allocates_nothing() {
                 .filter(|&stage| stage != Stage::Reflection)
             {
                 for retained in [false, true] {
-                    check(scene, (stage, kernel), (100, camera::ROUND), retained);
+                    check(scene, (stage, kernel), (50, camera::ROUND), retained);
                 }
             }
         }

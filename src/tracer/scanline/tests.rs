@@ -375,14 +375,14 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
 fn late_faces_take_no_more_memory_than_they_may() {
     let mut random = Random::new();
     let mut spheres = String::new();
-    for _ in 0..2400 {
+    for _ in 0..1600 {
         let center = [(); 3].map(|()| random.fraction() - 0.5);
         spheres += &format!(
             "[[sphere]]\ncenter = {center:?}\nradius = 0.03125\ncolor = [0.5, 0.5, 0.5]\n"
         );
     }
-    let (tetrahedra, mixed) = (slivers(400), slivers(100) + &spheres);
-    let size = 128;
+    let (tetrahedra, mixed) = (slivers(250), slivers(100) + &spheres);
+    let size = 96;
     let bytes = |text: &str, late_bytes, late_edges| {
         let crowd = Crowd {
             late_bytes,
