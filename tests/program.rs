@@ -107,7 +107,7 @@ fn the_homework_in_c_makes_the_pictures_of_listing() {
         return;
     };
     let scene = Scene::builtin();
-    let pictures = frames(&scene, 250, &[0.0, 0.3, 2.1, -4.2]);
+    let pictures = frames(&scene, 160, &[0.0, 0.3, 2.1, -4.2]);
     let wrong = compare(&command, Kernel::Listing, &pictures);
     assert!(wrong.iter().all(|count| *count == 0), "{wrong:?}");
 }
@@ -118,7 +118,7 @@ fn a_correct_tracer_in_c_makes_exact_pictures_but_for_what_doubles_round() {
         return;
     };
     let [scene, crowd] = [Scene::builtin(), hard_scene("crowd")];
-    let mut pictures = frames(&scene, 250, &[0.0, 0.3, 2.1, -4.2]);
+    let mut pictures = frames(&scene, 160, &[0.0, 0.3, 2.1, -4.2]);
     pictures.extend(frames(&crowd, 64, &[0.9]));
     let wrong = compare(&command, Kernel::Exact, &pictures);
     assert!(wrong.iter().all(|count| *count <= 5), "{wrong:?}");

@@ -93,7 +93,7 @@ fn a_comparison_is_text_alone() {
 #[test]
 fn a_progress_bar_is_drawn_only_where_it_can_be_drawn_over() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "capture --stage 6 --frames 0..20 --size 300 --through none -o a.apng";
+    let line = "capture --stage 6 --frames 0..20 --size 120 --through none -o a.apng";
     for columns in [40, 80] {
         let bar = shown(&folder, columns, ("LANG", "C"), line);
         let frames = bar
