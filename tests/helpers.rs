@@ -28,13 +28,14 @@ pub(crate) use explanation::line;
 pub(crate) use explanation::says_what_is_shown;
 #[cfg(all(feature = "program", target_os = "linux"))]
 pub(crate) use fault::with_fault;
-#[cfg(all(feature = "program", target_os = "linux"))]
-pub(crate) use program::backends;
 #[cfg(all(feature = "program", unix))]
 pub(crate) use program::program_after;
+#[cfg(all(feature = "program", target_os = "linux"))]
+pub(crate) use program::{NO_DRIVERS, backends};
 #[cfg(feature = "program")]
 pub(crate) use program::{
-    PROGRAM, failed, names, open, printed, program, skipped, succeeded, text, words,
+    PROGRAM, failed, names, open, printed, program, skipped, succeeded, text, without_drivers,
+    words,
 };
 pub(crate) use random::Random;
 #[cfg(all(feature = "program", target_os = "linux"))]

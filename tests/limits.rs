@@ -12,7 +12,8 @@ use firsthit::image::Raster;
 use tempfile::TempDir;
 
 use crate::helpers::{
-    PROGRAM, backends, failed, names, program, program_after, succeeded, text, with_fault, words,
+    PROGRAM, backends, failed, names, program, program_after, succeeded, text, with_fault,
+    without_drivers, words,
 };
 
 fn folder() -> TempDir {
@@ -288,7 +289,8 @@ fn a_full_standard_output_takes_no_file_along() {
     let folder = folder();
     let line = "report --size 2 --frames 0..0 --kernel double --threads 1 --json a.json";
     let full = fs::File::create("/dev/full").unwrap();
-    let output = program(&folder, line).stdout(full).output().unwrap();
+    let mut report = without_drivers(&folder, line);
+    let output = report.stdout(full).output().unwrap();
     let message = failed(&output, 1, line);
     assert!(
         message.contains("standard output cannot be written"),

@@ -10,12 +10,16 @@ use firsthit::{Kernel, Scene, Stage};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::helpers::{self, hard_scene_text, hard_scenes, printed, program, trace_with_decisions};
+use crate::helpers::{
+    self, hard_scene_text, hard_scenes, printed, program, trace_with_decisions, without_drivers,
+};
 
-/// What `firsthit report` with the words of `line` printed; it must have succeeded and said nothing
-/// else.
+/// What `firsthit report` with the words of `line` printed, without the drivers of OpenGL; it must
+/// have succeeded and said nothing else.
 fn report(folder: &TempDir, line: &str) -> String {
-    printed(folder, &format!("report {line}"))
+    let line = format!("report {line}");
+    let output = without_drivers(folder, &line).output().unwrap();
+    helpers::succeeded(&output, &line)
 }
 
 /// What it said when it failed with `status`.
@@ -63,9 +67,9 @@ const ALL: &str =
 #[test]
 fn the_json_is_as_promised() {
     let folder = tempfile::tempdir().unwrap();
-    report(
+    printed(
         &folder,
-        &format!("--size 16 --frames 0..1 --threads 2 --json r.json {ALL}"),
+        &format!("report --size 16 --frames 0..1 --threads 2 --json r.json {ALL}"),
     );
     let report = json(&folder, "r.json");
     assert_eq!(report["version"], 1);
@@ -157,9 +161,9 @@ fn the_json_is_as_promised() {
 #[test]
 fn the_table_has_every_row_and_no_line_longer_than_another_of_its_kind() {
     let folder = tempfile::tempdir().unwrap();
-    let table = report(
+    let table = printed(
         &folder,
-        "--size 8 --frames 3..3 --threads 1 --stage 1 --stage 5",
+        "report --size 8 --frames 3..3 --threads 1 --stage 1 --stage 5",
     );
     for stage in ["1", "5"] {
         for kernel in ["exact", "fast", "double", "listing"] {
@@ -560,7 +564,7 @@ fn black() -> TempDir {
 #[cfg(unix)]
 fn report_on(command: &str, folder: &TempDir, line: &str) -> Command {
     let line = format!("report --size 24 --frames 0..1 {line}");
-    let mut words = program(folder, &line);
+    let mut words = without_drivers(folder, &line);
     words.args(["--program", command]);
     words
 }

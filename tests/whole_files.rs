@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
-use crate::helpers::{Random, failed, program, program_after, succeeded, with_fault};
+use crate::helpers::{NO_DRIVERS, Random, failed, program, program_after, succeeded, with_fault};
 
 /// Every kind of output: what writes it, and the names that it gets.
 const OUTPUTS: [(&str, &[&str]); 7] = [
@@ -103,7 +103,7 @@ fn kill(times: u32, signals: &[Signal], fault: &str, drivers: bool) {
     for (line, names) in OUTPUTS {
         let folder = folder();
         let setup = match line.split_once(' ') {
-            Some(("report", _)) if !drivers => "ulimit -v 1000000",
+            Some(("report", _)) if !drivers => NO_DRIVERS,
             _ => ":",
         };
         let begin = Instant::now();
@@ -255,7 +255,8 @@ fn a_file_that_grows_too_large_is_a_line_and_no_death() {
                 fs::write(folder.path().join(name), "old").unwrap();
             }
             // Files may grow to a block of 512 or 1024 bytes.
-            let mut command = program_after("ulimit -f 1", &folder, line);
+            let setup = format!("ulimit -f 1; {NO_DRIVERS}");
+            let mut command = program_after(&setup, &folder, line);
             command.stdout(Stdio::null());
             if !fault.is_empty() && with_fault(&mut command, fault).is_none() {
                 return;

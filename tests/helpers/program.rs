@@ -78,6 +78,19 @@ pub(crate) fn program_after(setup: &str, folder: &TempDir, line: &str) -> Comman
     command
 }
 
+/// What is set up for a report so that it loads no driver of OpenGL: each may need a GiB.
+#[cfg(target_os = "linux")]
+pub(crate) const NO_DRIVERS: &str = "ulimit -v 1000000";
+
+/// The program with the words of `line`, which need no drivers of OpenGL. To load them takes most of
+/// the time of a report of small pictures: on Linux it does not.
+pub(crate) fn without_drivers(folder: &TempDir, line: &str) -> Command {
+    #[cfg(target_os = "linux")]
+    return program_after(NO_DRIVERS, folder, line);
+    #[cfg(not(target_os = "linux"))]
+    return program(folder, line);
+}
+
 /// What the program prints; it must succeed and say nothing on standard error.
 pub(crate) fn printed(folder: &TempDir, line: &str) -> String {
     succeeded(&program(folder, line).output().unwrap(), line)
