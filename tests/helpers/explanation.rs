@@ -29,8 +29,8 @@ pub(crate) fn says_what_is_shown(
         Some(&*format!("{r} {g} {b}")),
         "{text}"
     );
-    let shown = text.lines().filter(|line| line.starts_with("shows"));
-    let shown = shown.last().map(|line| line["shows".len()..].trim());
+    let mut shown = text.lines().filter(|line| line.starts_with("shows"));
+    let shown = shown.next_back().map(|line| line["shows".len()..].trim());
     let (expected, in_shadow) = match decision {
         Decision::Quadrant(_) => return assert!(line(text, "quadrant").is_some(), "{text}"),
         Decision::Background => ("the background: nothing is hit".to_owned(), false),
