@@ -4,8 +4,8 @@ pub(super) mod band_columns;
 pub(super) mod border;
 #[cfg(test)]
 mod bounds_tests;
-pub(super) mod chords;
 pub(super) mod ellipse;
+pub(super) mod ellipses;
 pub(super) mod enclosure;
 pub(super) mod half_plane;
 pub(super) mod pixel_plane;

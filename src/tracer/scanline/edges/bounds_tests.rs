@@ -13,7 +13,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, RowPixels as _, Rung};
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::SphereOutlines;
+use crate::tracer::scanline::edges::ellipses::SphereOutlines;
 use crate::tracer::scanline::edges::enclosure::ColumnEnclosure;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;

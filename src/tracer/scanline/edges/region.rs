@@ -320,7 +320,7 @@ mod tests {
     use super::*;
     use crate::number::{Bounded, Real as _};
     use crate::random::Random;
-    use crate::tracer::scanline::edges::ellipse::SphereOutlines;
+    use crate::tracer::scanline::edges::ellipses::SphereOutlines;
     use crate::tracer::vector::Vector;
 
     const SIZE: u32 = 24;

@@ -10,7 +10,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::collect;
 use crate::tracer::extent::Extent;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::SphereOutlines;
+use crate::tracer::scanline::edges::ellipses::SphereOutlines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
@@ -155,7 +155,7 @@ impl<'v, 'f> Outlines<'v, 'f> {
 
     /// Calls `each` with the outlines of the solids of `numbers`. Those that are not culled are made
     /// one by one: each is used while the processor has it at hand, and without a copy, which would
-    /// wait for what was just written (`edges/ellipse.rs`).
+    /// wait for what was just written (`edges/ellipses.rs`).
     pub(crate) fn for_each(mut self, mut each: impl FnMut(Outlined<'f>)) {
         match self.culled.take() {
             Some(culled) => culled.into_iter().for_each(each),

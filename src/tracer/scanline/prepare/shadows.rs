@@ -11,7 +11,7 @@ use crate::scene::{Side, Solid};
 use crate::tracer::arena::collect;
 use crate::tracer::half_space::HalfSpace;
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::ParallelLines;
+use crate::tracer::scanline::edges::ellipses::ParallelLines;
 use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::edges::pixel_plane::PixelPlane;
 use crate::tracer::scanline::edges::region::Region;

@@ -8,7 +8,7 @@ use crate::number::Bounded;
 use crate::scene::{Side, Solid, SurfaceCasters};
 use crate::tracer::decision::Decision;
 use crate::tracer::pixel::{Picture, SeenSurface};
-use crate::tracer::scanline::edges::ellipse::ParallelLines;
+use crate::tracer::scanline::edges::ellipses::ParallelLines;
 use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{Receiver, RegionKind};
 use crate::tracer::scanline::prepare::appearance::prepare_solids;

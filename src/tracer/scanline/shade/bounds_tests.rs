@@ -14,7 +14,7 @@ use crate::stage::Stage;
 use crate::tracer::arena::Arena;
 use crate::tracer::ladder::{Ladder, RowPixels, Rung};
 use crate::tracer::pixel::Picture;
-use crate::tracer::scanline::edges::ellipse::SphereOutlines;
+use crate::tracer::scanline::edges::ellipses::SphereOutlines;
 use crate::tracer::scanline::grid::{Columns, Grid, ROWS};
 use crate::tracer::scanline::shade::caster::ShadowCylinder;
 use crate::tracer::scanline::shade::columns::{SphereBand, SphereColumns};

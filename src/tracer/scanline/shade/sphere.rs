@@ -5,7 +5,7 @@
 //! q (1, 0, 0) + m (0, 10, −3)/√109 + s (0, 3, 10)/√109, s = √(R² − m² − q²).
 //!
 //! This follows from `sphere.rs` with d = −(0, 3, 10). q = X − c_x depends on the column and m on
-//! the row, as in `edges/ellipse.rs`; s is toward the eye. So n·l, n·h and every plane's equation
+//! the row, as in `edges/ellipses.rs`; s is toward the eye. So n·l, n·h and every plane's equation
 //! at the hit are linear forms in q, m and s, and a pixel costs a root, a few products and sums.
 
 use std::cmp::Ordering;
