@@ -74,6 +74,12 @@ thread_local! {
 }
 
 impl Expression {
+    /// Prepares this thread for expressions. The first one asks for a little memory for what the
+    /// thread drops at its end, and the C library ends the process where that is refused.
+    pub(crate) fn begin_thread() {
+        SESSION.with(|_| ());
+    }
+
     /// Runs `compute`, whose expressions must not leave it, and forgets them.
     pub(crate) fn session<T>(compute: impl FnOnce() -> T) -> T {
         let result = compute();

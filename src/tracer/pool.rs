@@ -18,6 +18,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle, Thread};
 use std::time::{Duration, Instant};
 
+use crate::number::Expression;
+
 /// The most threads of a pool. With four times as many the memory maps of a process run out on
 /// Linux, and where a new thread finds none for its signal stack, the standard library ends the
 /// process.
@@ -97,11 +99,13 @@ impl Pool {
         };
         // A thread that begins asks for a little memory, and the C library ends the process where
         // that is refused: so all have begun before the caller asks for pictures.
+        Expression::begin_thread();
         let begun = Arc::new((Mutex::new(0), Condvar::new()));
         for number in 1..threads {
             let (shared, begun) = (pool.shared.clone(), begun.clone());
             let worker = thread::Builder::new().name(format!("tracer {number}"));
             let serve = move || {
+                Expression::begin_thread();
                 *lock(&begun.0) += 1;
                 begun.1.notify_one();
                 drop(begun);
