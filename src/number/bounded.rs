@@ -111,7 +111,7 @@ impl Bounded {
 #[inline]
 fn is_exact_product(a: f64, b: f64) -> bool {
     let zeros = |x: f64| (x.to_bits() | 1 << (f64::MANTISSA_DIGITS - 1)).trailing_zeros();
-    zeros(a) + zeros(b) >= f64::MANTISSA_DIGITS && (a * b).abs() > UNDERFLOW
+    (zeros(a) + zeros(b) >= f64::MANTISSA_DIGITS) & ((a * b).abs() > UNDERFLOW)
 }
 
 impl Add for Bounded {

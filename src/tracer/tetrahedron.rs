@@ -9,12 +9,14 @@
 //! slip between them.
 
 mod at_once;
+mod passage;
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
 pub(super) use at_once::outward_normals_at_once;
+pub(super) use passage::{Passage, WALLS_AT_ONCE, Wall, Walls};
 
 use super::half_space::HalfSpace;
 use super::line::{Direction, Hit, Line, Normal};
@@ -39,28 +41,6 @@ pub(super) struct Tetrahedron<R> {
 /// enters, positive where it leaves, 0 where it runs along.
 pub(super) type FaceSigns = [Ordering; 4];
 
-/// The border of a half-space that tells where lines of one direction meet a tetrahedron.
-#[derive(Clone, Copy)]
-pub(super) enum Wall {
-    /// The plane of a face. The half-space is where f ≤ 0, or f < 0 if it is not `closed`.
-    Face { face: usize, closed: bool },
-    /// The plane in which lines meet `EDGES[edge]`, with faces i < j. The half-space is where the
-    /// edge function is not negative or, if it is the `opposite` one, not positive. If lines enter i
-    /// and leave j, the function is not negative where t_i ≤ t_j; if they enter both, where t_i ≥
-    /// t_j.
-    Edge { edge: usize, opposite: bool },
-}
-
-impl Wall {
-    /// Whether it belongs to the half-space.
-    pub(super) fn is_closed(self) -> bool {
-        match self {
-            Wall::Face { closed, .. } => closed,
-            Wall::Edge { .. } => true,
-        }
-    }
-}
-
 /// The edge functions of a tetrahedron for all lines of one direction d.
 pub(super) struct EdgeFunctions<R> {
     face_signs: FaceSigns,
@@ -68,46 +48,6 @@ pub(super) struct EdgeFunctions<R> {
     /// without its positive factor. Edges between two faces that lines leave or run along are
     /// never asked for.
     edge_normals: [Vector<R>; 6],
-}
-
-/// The faces that lines enter, in the order of their numbers.
-pub(super) fn entered(face_signs: FaceSigns) -> impl Iterator<Item = usize> + Clone {
-    faces(face_signs, Ordering::Less)
-}
-
-/// All pairs of faces that lines enter, as [`last_entered`] needs them, each with the wall of
-/// the half-space in which lines enter the first one last.
-pub(super) fn entered_pairs(
-    face_signs: FaceSigns,
-) -> impl Iterator<Item = ((usize, usize), Wall)> + Clone {
-    let is_entered = move |face: usize| face_signs[face].is_lt();
-    let edges = EDGES.iter().enumerate();
-    edges.filter_map(move |(edge, &(i, j, _))| {
-        let opposite = false;
-        (is_entered(i) && is_entered(j)).then_some(((i, j), Wall::Edge { edge, opposite }))
-    })
-}
-
-/// The walls of half-spaces that hold a line exactly if the line meets the solid: it leaves no
-/// face before it enters another, and lies outside of no face that it is parallel to.
-pub(super) fn met(face_signs: FaceSigns) -> impl Iterator<Item = Wall> {
-    let closed = true;
-    let beside = faces(face_signs, Ordering::Equal).map(move |face| Wall::Face { face, closed });
-    let edges = EDGES.iter().enumerate();
-    let pairs = edges.filter_map(move |(edge, &(i, j, _))| {
-        let (sign, other) = (face_signs[i], face_signs[j]);
-        let opposite = sign.is_gt();
-        (sign.is_ne() && other == sign.reverse()).then_some(Wall::Edge { edge, opposite })
-    });
-    beside.chain(pairs)
-}
-
-/// The walls of half-spaces that hold a ray's origin exactly if the ray meets the solid at some
-/// t > 0: its line meets the solid, and every face that it leaves lies ahead.
-pub(super) fn ahead(face_signs: FaceSigns) -> impl Iterator<Item = Wall> {
-    let closed = false;
-    let leaving = faces(face_signs, Ordering::Greater).map(move |face| Wall::Face { face, closed });
-    leaving.chain(met(face_signs))
 }
 
 impl<R: Real> Tetrahedron<R> {
@@ -206,9 +146,10 @@ impl<R: Real> Tetrahedron<R> {
         match wall {
             Wall::Face { face, .. } => HalfSpace {
                 closed: wall.is_closed(),
-                ..self.inner_half_space(face)
+                ..self.inner_half_space(face.into())
             },
             Wall::Edge { edge, opposite } => {
+                let edge = usize::from(edge);
                 let normal = edge_normal(edge);
                 HalfSpace {
                     normal: if opposite { -normal } else { normal },
@@ -218,6 +159,11 @@ impl<R: Real> Tetrahedron<R> {
                 }
             }
         }
+    }
+
+    /// Whether one of its faces lies in this plane.
+    pub(super) fn has_face_in(&self, plane: Support) -> bool {
+        self.supports.contains(&plane)
     }
 
     /// Whether n·l ≤ 0 for a face.
@@ -232,7 +178,7 @@ impl<R: Real> Tetrahedron<R> {
 
     /// Whether the line meets the solid.
     fn meets(&self, functions: &EdgeFunctions<R>, line: &Line<R>) -> Result<bool, R::Doubt> {
-        let walls = met(functions.face_signs);
+        let walls = Passage::of(functions.face_signs).met.iter();
         all(walls.map(|wall| self.half_space_in(wall, functions).holds(line)))
     }
 
@@ -243,10 +189,12 @@ impl<R: Real> Tetrahedron<R> {
         functions: &EdgeFunctions<R>,
         line: &Line<R>,
     ) -> Result<usize, R::Doubt> {
-        let first = entered(functions.face_signs).next().unwrap_or(0);
-        last_entered(first, entered_pairs(functions.face_signs), |wall| {
+        let passage = Passage::of(functions.face_signs);
+        let pairs = passage.pairs().iter().copied().zip(passage.creases.iter());
+        let last = last_entered(pairs, |wall| {
             self.half_space_in(wall, functions).holds(line)
-        })
+        })?;
+        Ok(passage.entered().nth(last).unwrap_or(0))
     }
 
     /// The first point of the whole line in the solid.
@@ -277,7 +225,7 @@ impl<R: Real> Tetrahedron<R> {
         functions: &EdgeFunctions<R>,
         ray: &Line<R>,
     ) -> Result<bool, R::Doubt> {
-        let walls = ahead(functions.face_signs);
+        let walls = Passage::of(functions.face_signs).ahead.iter();
         all(walls.map(|wall| self.half_space_in(wall, functions).holds(ray)))
     }
 }
@@ -340,27 +288,20 @@ pub(super) fn certain_face_signs(
     Some(face_signs)
 }
 
-/// The faces whose n·d has this sign.
-fn faces(face_signs: FaceSigns, sign: Ordering) -> impl Iterator<Item = usize> + Clone {
-    let faces = face_signs.into_iter().enumerate();
-    faces.filter_map(move |(face, its_sign)| (its_sign == sign).then_some(face))
-}
-
-/// The face that a line enters last, of several at once the lowest. `first` is the lowest that the
-/// line enters. `pairs` are all pairs of such faces, in increasing order, the lower face of each
-/// first; `is_first_last` tells whether the line enters the first face of a pair last.
+/// Which of the faces that a line enters it enters last, of several at once the lowest. `pairs` are
+/// those of [`Passage::pairs`]; `is_first_last` tells whether the line enters the first face of a
+/// pair last.
 pub(super) fn last_entered<T, E>(
-    first: usize,
-    pairs: impl Iterator<Item = ((usize, usize), T)>,
+    pairs: impl Iterator<Item = ([u8; 2], T)>,
     is_first_last: impl Fn(T) -> Result<bool, E>,
 ) -> Result<usize, E> {
-    let mut last = first;
-    for ((one, other), pair) in pairs {
+    let mut last = 0;
+    for ([one, other], pair) in pairs {
         if one == last && !is_first_last(pair)? {
             last = other;
         }
     }
-    Ok(last)
+    Ok(last.into())
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::{Tetrahedron, Wall, edge_normal, outward, outward_normals, plane_normal};
+use super::{
+    Tetrahedron, WALLS_AT_ONCE, Wall, edge_normal, outward, outward_normals, plane_normal,
+};
 use crate::number::{Bounded, FourBounded};
 use crate::scene::{EDGES, FACES};
 use crate::tracer::vector::Vector;
@@ -41,7 +43,7 @@ impl Tetrahedron<Bounded> {
     pub(in crate::tracer) fn half_spaces_at_once<S: Simd>(
         &self,
         simd: S,
-        walls: &[Wall; 4],
+        walls: &[Wall; WALLS_AT_ONCE],
         d: Vector<Bounded>,
     ) -> [Vector<FourBounded<S>>; 2] {
         let (mut from, mut to, mut at) = ([0; 4], [0; 4], [0; 4]);
@@ -50,10 +52,10 @@ impl Tetrahedron<Bounded> {
             match walls[i] {
                 Wall::Face { face, .. } => {
                     any_face = true;
-                    at[i] = FACES[face][0];
+                    at[i] = FACES[usize::from(face)][0];
                 }
                 Wall::Edge { edge, opposite } => {
-                    let (.., [first, last]) = EDGES[edge];
+                    let (.., [first, last]) = EDGES[usize::from(edge)];
                     // The normal of a reversed edge is the opposite one.
                     let is_reversed = opposite == self.right_handed;
                     (from[i], to[i]) = if is_reversed {
@@ -74,7 +76,7 @@ impl Tetrahedron<Bounded> {
             let mut each = normals.apart();
             for i in 0..4 {
                 if let Wall::Face { face, .. } = walls[i] {
-                    each[i] = -self.normals[face];
+                    each[i] = -self.normals[usize::from(face)];
                 }
             }
             normals = Vector::together(simd, each);
@@ -114,7 +116,7 @@ mod tests {
     use crate::number::Real as _;
     use crate::random::Random;
     use crate::scene::Scene;
-    use crate::tracer::tetrahedron::ahead;
+    use crate::tracer::tetrahedron::Passage;
     use crate::tracer::view_space::eye_direction;
     use crate::tracer::view_transform::ViewTransform;
 
@@ -144,7 +146,8 @@ mod tests {
                 (eye.vector, solid.face_signs(&eye).unwrap()),
                 (light, solid.facing_light),
             ];
-            for (d, walls) in lines.map(|(d, signs)| (d, ahead(signs).collect::<Vec<Wall>>())) {
+            for (d, signs) in lines {
+                let walls: Vec<Wall> = Passage::of(signs).ahead.iter().collect();
                 for four in walls.windows(4) {
                     let four: &[Wall; 4] = four.try_into().unwrap();
                     let is_face = |wall: &&Wall| matches!(wall, Wall::Face { .. });

@@ -19,7 +19,7 @@ use crate::tracer::scanline::edges::half_plane::HalfPlane;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth, Rectangle};
 use crate::tracer::scanline::prepare::surface_plane::{SurfaceDepth, surface_plane};
-use crate::tracer::tetrahedron::{entered, met};
+use crate::tracer::tetrahedron::Passage;
 use crate::tracer::view_space::eye_direction;
 
 const SIZE: u32 = 500;
@@ -122,7 +122,7 @@ fn check_tetrahedra(
     let (tetrahedra, exact) = (&bounded.view.tetrahedra, &truth.view.tetrahedra);
     for index in 0..tetrahedra.count() {
         let (t, exact) = (tetrahedra.get(index), exact.get(index));
-        for wall in met(t.eye_signs) {
+        for wall in Passage::of(t.eye_signs).met.iter() {
             let half_space = t.solid.half_space(wall, eye_direction().vector);
             let exact = exact.solid.half_space(wall, eye_direction().vector);
             let half_plane = HalfPlane::of(&half_space, None, (grid, &arena));
@@ -148,7 +148,7 @@ fn check_tetrahedra(
                 }
             }
         }
-        for face in entered(t.eye_signs) {
+        for face in Passage::of(t.eye_signs).entered() {
             let depth = FaceDepth::new(&t.solid.inner_half_space(face), grid);
             let plane = exact.solid.inner_half_space(face);
             for (column, row) in (0..SIZE)

@@ -11,7 +11,7 @@ use crate::tracer::scanline::edges::border::{Border, Height, Root};
 use crate::tracer::scanline::edges::enclosure::{ColumnEnclosure, Cut};
 use crate::tracer::scanline::edges::pixel_plane::{PixelPlane, screen_origin};
 use crate::tracer::scanline::grid::Grid;
-use crate::tracer::tetrahedron::{Tetrahedron, Wall};
+use crate::tracer::tetrahedron::{Tetrahedron, WALLS_AT_ONCE, Wall, Walls};
 use crate::tracer::vector::Vector;
 use crate::tracer::view_space::number_at;
 
@@ -104,41 +104,26 @@ impl<'f> HalfPlane<'f> {
     /// and the tetrahedron.
     pub(crate) fn all_of(
         (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
-        walls: impl Iterator<Item = Wall>,
+        walls: &Walls,
         plane: Option<&PixelPlane>,
         (grid, level): (Grid, Level),
         arena: &'f Bump,
     ) -> &'f [HalfPlane<'f>] {
-        let mut all = Growing::new_in(arena);
-        let may_be_exact = tetrahedron.may_be_exact();
-        let half_space = |wall: Wall| tetrahedron.half_space(wall, direction);
-        let mut add = |four: &[Wall; 4], count: usize| {
-            let is_special = |wall: &Wall| {
-                matches!(wall, Wall::Face { .. }) && is_border(&half_space(*wall), plane)
-            };
-            if may_be_exact || four.iter().any(is_special) {
-                let each = four[..count].iter().map(|wall| half_space(*wall));
-                all.extend(each.map(|half_space| HalfPlane::of(&half_space, plane, (grid, arena))));
-            } else {
+        let mut all = Growing::with_capacity_in(walls.count(), arena);
+        let support = plane.and_then(|plane| plane.support);
+        let any_border = walls.any_face() && support.is_some_and(|it| tetrahedron.has_face_in(it));
+        if any_border || tetrahedron.may_be_exact() {
+            let each = walls
+                .iter()
+                .map(|wall| tetrahedron.half_space(wall, direction));
+            all.extend(each.map(|half_space| HalfPlane::of(&half_space, plane, (grid, arena))));
+        } else {
+            for walls in walls.vectors() {
                 let lines = (tetrahedron, direction);
-                let walls = (four, count);
                 dispatch!(level, simd => {
                     HalfPlane::add_four(simd, lines, walls, plane, (grid, arena), &mut all);
                 });
             }
-        };
-        let mut waiting = None;
-        walls.for_each(|wall| {
-            let (four, count) = waiting.get_or_insert(([wall; 4], 0));
-            four[*count] = wall;
-            *count += 1;
-            if *count == 4 {
-                add(four, 4);
-                waiting = None;
-            }
-        });
-        if let Some((four, count)) = waiting {
-            add(&four, count);
         }
         all.into_bump_slice()
     }
@@ -149,7 +134,7 @@ impl<'f> HalfPlane<'f> {
     fn add_four<S: Simd>(
         simd: S,
         (tetrahedron, direction): (&Tetrahedron<Bounded>, Vector<Bounded>),
-        (walls, count): (&[Wall; 4], usize),
+        (walls, count): (&[Wall; WALLS_AT_ONCE], usize),
         plane: Option<&PixelPlane>,
         (grid, arena): (Grid, &'f Bump),
         all: &mut Growing<'f, HalfPlane<'f>>,

@@ -30,7 +30,7 @@ pub(crate) enum RegionKind {
 pub(crate) struct SolidIndex(pub(crate) u32);
 
 /// The number of what shadows fall on: the surface or a front face.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Receiver(pub(crate) u32);
 
 /// An edge table to which regions are added. A region is known by its number.
@@ -121,11 +121,15 @@ impl<'f> EdgeTableBuilder<'f> {
         }
     }
 
-    /// Adds a region, and returns its number.
-    pub(crate) fn add(&mut self, region: Region<'f>, kind: RegionKind) -> usize {
+    /// The number of regions so far, and of the next.
+    pub(crate) fn count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Adds a region.
+    pub(crate) fn add(&mut self, region: Region<'f>, kind: RegionKind) {
         self.regions.push(region);
         self.kinds.push(kind);
-        self.kinds.len() - 1
     }
 
     /// Adds a receiver that is seen in these rows only, and the shadows on it.

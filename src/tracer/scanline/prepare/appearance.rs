@@ -16,7 +16,7 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::edges::table::{RegionKind, SolidIndex};
 use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::face_plane;
-use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces, Pair};
+use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces};
 use crate::tracer::scanline::prepare::late_faces::LateFaces;
 use crate::tracer::scanline::prepare::outline::{Outlined, OutlinedFaces, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on_face};
@@ -26,7 +26,7 @@ use crate::tracer::scanline::shade::shaded::ShadedSphere;
 use crate::tracer::scanline::shade::sphere::{HitBounds, SphereConstants};
 use crate::tracer::scanline::visibility::separation::Separation;
 use crate::tracer::sphere::Sphere;
-use crate::tracer::tetrahedron::{entered, entered_pairs};
+use crate::tracer::tetrahedron::Passage;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 use crate::tracer::view_space::eye_direction;
@@ -220,13 +220,13 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         solid: &OutlinedFaces<'f>,
         t: &TetrahedronInView<Bounded>,
         parts: &mut Builder<'f, '_>,
-    ) -> FrontFaces<'f> {
+    ) -> FrontFaces {
         let (arena, grid) = (parts.arena, parts.grid);
-        let faces = entered(t.eye_signs);
-        let mut front_faces = Growing::with_capacity_in(4, arena);
+        let passage = Passage::of(t.eye_signs);
+        let mut front_faces = [FrontFace::default(); 4];
         // In shadow, all faces have one colour.
         let mut dark = None;
-        for face in faces.clone() {
+        for (front_face, face) in front_faces.iter_mut().zip(passage.entered()) {
             let mut shadows = Growing::new_in(arena);
             if self.receives(solid.number, face, t) {
                 shadows = self.shadows_on_face(solid, face, t, parts);
@@ -243,7 +243,7 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
                 *dark.insert(paint)
             };
             let outside = paint(self.has_shadows && t.solid.turned_away(face));
-            front_faces.push(FrontFace {
+            *front_face = FrontFace {
                 outside,
                 in_shadow: if shadows.is_empty() {
                     outside
@@ -251,28 +251,22 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
                     paint(true)
                 },
                 shadows: parts.edge_table.add_receiver(shadows, solid.rows),
-            });
+            };
         }
-        let index = |face: usize| faces.clone().position(|other| other == face);
-        let pairs = entered_pairs(t.eye_signs);
         let lines = (&t.solid, eye_direction().vector);
-        let firsts = pairs.clone().map(|(_, first)| first);
-        let creases = HalfPlane::all_of(lines, firsts, None, (grid, parts.level), arena);
-        // A crease matters within the solid only: elsewhere a level one would cross many edges.
-        let pairs = pairs
-            .zip(creases.chunks(1))
-            .filter_map(|(((i, j), _), crease)| {
-                let crease = Region::new(crease, None, grid)
-                    .within(solid.rows)
-                    .clipped(solid.outline);
-                Some(Pair {
-                    front_faces: (index(i)?, index(j)?),
-                    crease: parts.edge_table.add(crease, RegionKind::Crease),
-                })
-            });
+        let creases = HalfPlane::all_of(lines, &passage.creases, None, (grid, parts.level), arena);
+        let first_crease = parts.edge_table.count();
+        for crease in creases.chunks(1) {
+            // A crease matters within the solid only: elsewhere a level one would cross many edges.
+            let crease = Region::new(crease, None, grid)
+                .within(solid.rows)
+                .clipped(solid.outline);
+            parts.edge_table.add(crease, RegionKind::Crease);
+        }
         FrontFaces {
-            pairs: collect(arena, pairs),
-            all: front_faces.into_bump_slice(),
+            all: front_faces,
+            pairs: passage.pairs(),
+            first_crease,
         }
     }
 

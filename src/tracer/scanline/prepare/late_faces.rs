@@ -47,7 +47,7 @@ pub(crate) struct LateFaces<'f> {
 /// Front faces with regions and paints of their own.
 pub(crate) struct SplitFaces<'f> {
     /// The faces; receivers, creases and paints are numbers among those of this solid.
-    pub(crate) front_faces: FrontFaces<'f>,
+    pub(crate) front_faces: FrontFaces,
     /// What the regions are: the creases, and the shadows on the faces.
     pub(crate) kinds: RegionKinds<'f>,
     /// The paints of the faces.

@@ -26,7 +26,7 @@ use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::prepare::shadows::shadows_on_face;
 use crate::tracer::scanline::row_edges::{Added, RowEdges};
 use crate::tracer::scanline::write::paint::AllPaints;
-use crate::tracer::tetrahedron::entered;
+use crate::tracer::tetrahedron::Passage;
 
 /// In a solid of more rows, each shadow's own rows are found.
 const FEW_ROWS: u32 = 4 * ROWS as u32;
@@ -54,10 +54,7 @@ impl<'f> LateFaces<'f> {
             let color = |decision| maker.source.pixels.color(decision);
             let (faces, regions, paints) = self.make(maker.source, &color, &work.spare);
             memory.alloc(SplitFaces {
-                front_faces: FrontFaces {
-                    all: memory.alloc_slice_copy(faces.all),
-                    pairs: memory.alloc_slice_copy(faces.pairs),
-                },
+                front_faces: faces,
                 kinds: RegionKinds {
                     all: memory.alloc_slice_copy(regions.kinds.all),
                     receivers: regions.kinds.receivers,
@@ -74,7 +71,7 @@ impl<'f> LateFaces<'f> {
         source: &'s LateSource<'f>,
         color: &'s dyn Fn(Decision) -> [f32; 3],
         spare: &'s Bump,
-    ) -> (FrontFaces<'s>, Regions<'s>, AllPaints<'s>) {
+    ) -> (FrontFaces, Regions<'s>, AllPaints<'s>) {
         let picture = source.pixels.bounded();
         let appearances = Appearances::new(picture, picture.view(self.mirrored), self.mirrored);
         let screen = (source.grid, source.level);
@@ -127,7 +124,7 @@ impl<'f> LateFaces<'f> {
             casters
                 .filter(|caster| matches!(view.solid(usize::from(**caster)), Solid::Tetrahedron(_)))
         };
-        let mut faces = entered(self.tetrahedron.eye_signs);
+        let mut faces = Passage::of(self.tetrahedron.eye_signs).entered();
         let mut casters = [(); 4].map(|()| faces.next().map(|face| (face, tetrahedra(face))));
         let (from, to) = self.outlined.rows;
         let is_high = to > from + FEW_ROWS;

@@ -16,7 +16,7 @@ use crate::tracer::scanline::edges::region::Region;
 use crate::tracer::scanline::grid::Grid;
 use crate::tracer::scanline::prepare::culling::Tiles;
 use crate::tracer::scanline::prepare::depth::{Depth, FaceDepth};
-use crate::tracer::tetrahedron::{entered, met};
+use crate::tracer::tetrahedron::Passage;
 use crate::tracer::view::{SolidKinds, View};
 use crate::tracer::view_space::eye_direction;
 
@@ -194,11 +194,12 @@ impl<'v, 'f> Outlines<'v, 'f> {
             }
             Solid::Tetrahedron(t) => {
                 let lines = (&t.solid, eye_direction().vector);
-                let met = met(t.eye_signs);
-                let met = HalfPlane::all_of(lines, met, None, (grid, self.level), arena);
-                let faces = entered(t.eye_signs);
-                let depths =
-                    faces.map(|face| FaceDepth::new(&t.solid.inner_half_space(face), grid));
+                let passage = Passage::of(t.eye_signs);
+                let screen = (grid, self.level);
+                let met = HalfPlane::all_of(lines, &passage.met, None, screen, arena);
+                let depths = passage
+                    .entered()
+                    .map(|face| FaceDepth::new(&t.solid.inner_half_space(face), grid));
                 Outlined {
                     number,
                     outline: Region::new(met, None, grid).within(rows),

@@ -20,7 +20,7 @@ use crate::tracer::scanline::shade::caster::{Caster, ShadowCylinder};
 use crate::tracer::scanline::shade::light::Lighting;
 use crate::tracer::scanline::shade::sphere::{HitBounds, LinearForm};
 use crate::tracer::surface::Surface;
-use crate::tracer::tetrahedron::{ahead, met};
+use crate::tracer::tetrahedron::Passage;
 use crate::tracer::vector::Vector;
 use crate::tracer::view::View;
 
@@ -131,11 +131,12 @@ pub(crate) fn shadows_on<'f>(
             Solid::Tetrahedron(t) => {
                 let lines = (&t.solid, to_light.vector);
                 let (plane, screen, signs) = (Some(plane), (grid, level), t.solid.facing_light);
-                let planes = if is_ahead {
-                    HalfPlane::all_of(lines, met(signs), plane, screen, arena)
-                } else {
-                    HalfPlane::all_of(lines, ahead(signs), plane, screen, arena)
+                let passage = Passage::of(signs);
+                let walls = match is_ahead {
+                    true => &passage.met,
+                    false => &passage.ahead,
                 };
+                let planes = HalfPlane::all_of(lines, walls, plane, screen, arena);
                 Region::new(planes, None, grid)
             }
         }
@@ -181,8 +182,9 @@ pub(crate) fn casters_on<'f>(
             }
             Solid::Tetrahedron(t) => {
                 let to_light = view.shading.to_light.vector;
-                let forms = ahead(t.solid.facing_light)
-                    .map(|wall| bounds.inside(&t.solid.half_space(wall, to_light), lighting));
+                let walls = Passage::of(t.solid.facing_light).ahead.iter();
+                let forms =
+                    walls.map(|wall| bounds.inside(&t.solid.half_space(wall, to_light), lighting));
                 Some(Caster::Polyhedron(collect(arena, forms)))
             }
         }

@@ -57,7 +57,7 @@ pub(crate) enum Appearance<'f> {
     /// The pixels of a sphere are shaded.
     Sphere(&'f ShadedSphere<'f>),
     /// Each front face of a tetrahedron has its paints.
-    FrontFaces(&'f FrontFaces<'f>),
+    FrontFaces(&'f FrontFaces),
     /// The same, but prepared when the solid is first seen.
     LateFaces(&'f LateFaces<'f>),
 }

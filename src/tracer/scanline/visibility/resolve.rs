@@ -113,13 +113,11 @@ fn candidate(solids: &PreparedSolids<'_>, solid: SolidIndex, coverage: &Coverage
 
 /// The index of the front face that a gap sees of a tetrahedron, if no crease is in doubt, and what
 /// the gap shows of it.
-pub(crate) fn front_face(
-    front_faces: &FrontFaces<'_>,
-    coverage: &Coverage,
-) -> (Option<usize>, Shown) {
-    let pairs = front_faces.pairs.iter();
-    let pairs = pairs.map(|pair| (pair.front_faces, pair.crease));
-    match last_entered(0, pairs, |region| coverage.holds(region).ok_or(())) {
+pub(crate) fn front_face(front_faces: &FrontFaces, coverage: &Coverage) -> (Option<usize>, Shown) {
+    let pairs = front_faces.pairs.iter().copied();
+    match last_entered(pairs.zip(front_faces.first_crease..), |region| {
+        coverage.holds(region).ok_or(())
+    }) {
         Ok(last) => (Some(last), front_face_in(&front_faces.all[last], coverage)),
         Err(()) => (None, Shown::InDoubt),
     }

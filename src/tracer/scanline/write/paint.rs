@@ -56,7 +56,7 @@ pub(crate) struct Paints<'f, 'c> {
 }
 
 /// The number of a paint.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct PaintNumber(pub(crate) u32);
 
 impl<'f, 'c> Paints<'f, 'c> {

@@ -1,0 +1,194 @@
+//! How lines of one direction pass through a tetrahedron, as far as the signs of its faces tell: a
+//! table, since no processor can predict these signs in a crowd.
+
+use std::cmp::Ordering;
+
+use super::FaceSigns;
+use crate::scene::EDGES;
+
+/// The border of a half-space that tells where lines of one direction meet a tetrahedron.
+#[derive(Clone, Copy)]
+pub(in crate::tracer) enum Wall {
+    /// The plane of a face. The half-space is where f ≤ 0, or f < 0 if it is not `closed`.
+    Face { face: u8, closed: bool },
+    /// The plane in which lines meet `EDGES[edge]`, with faces i < j. The half-space is where the
+    /// edge function is not negative or, if it is the `opposite` one, not positive. If lines enter i
+    /// and leave j, the function is not negative where t_i ≤ t_j; if they enter both, where t_i ≥
+    /// t_j.
+    Edge { edge: u8, opposite: bool },
+}
+
+impl Wall {
+    /// Whether it belongs to the half-space.
+    pub(in crate::tracer) fn is_closed(self) -> bool {
+        match self {
+            Wall::Face { closed, .. } => closed,
+            Wall::Edge { .. } => true,
+        }
+    }
+}
+
+/// Vectors hold so many walls.
+pub(in crate::tracer) const WALLS_AT_ONCE: usize = 4;
+
+/// A tetrahedron has no more walls for lines of one direction: 6.
+const MOST: usize = 2 * WALLS_AT_ONCE;
+
+/// Some of the walls for lines of one direction, first those of faces.
+#[derive(Clone, Copy)]
+pub(in crate::tracer) struct Walls {
+    /// The walls; after them, one of them again.
+    all: [Wall; MOST],
+    count: u8,
+}
+
+impl Walls {
+    const fn none() -> Self {
+        let (edge, opposite) = (0, false);
+        Walls {
+            all: [Wall::Edge { edge, opposite }; MOST],
+            count: 0,
+        }
+    }
+
+    const fn add(mut self, wall: Wall) -> Self {
+        if self.count == 0 {
+            self.all = [wall; MOST];
+        }
+        self.all[self.count as usize] = wall;
+        self.count += 1;
+        self
+    }
+
+    pub(in crate::tracer) fn count(&self) -> usize {
+        usize::from(self.count)
+    }
+
+    pub(in crate::tracer) fn iter(&self) -> impl Iterator<Item = Wall> + Clone + use<> {
+        self.all.into_iter().take(self.count())
+    }
+
+    /// Whether any of them is a face's.
+    pub(in crate::tracer) fn any_face(&self) -> bool {
+        matches!(self.all[0], Wall::Face { .. }) && self.count > 0
+    }
+
+    /// The walls, as many at once as vectors hold, and how many of these are walls.
+    pub(in crate::tracer) fn vectors(
+        &self,
+    ) -> impl Iterator<Item = (&[Wall; WALLS_AT_ONCE], usize)> {
+        let (vectors, _) = self.all.as_chunks();
+        let begins = (0..self.count()).step_by(WALLS_AT_ONCE);
+        let counts = begins.map(|begin| (self.count() - begin).min(WALLS_AT_ONCE));
+        vectors.iter().zip(counts)
+    }
+}
+
+/// How lines of one direction pass through a tetrahedron.
+#[derive(Clone, Copy)]
+pub(in crate::tracer) struct Passage {
+    entered: [u8; 4],
+    entered_count: u8,
+    pairs: [[u8; 2]; EDGES.len()],
+    /// For each pair of faces that lines enter, the wall of the half-space in which they enter the
+    /// first one last.
+    pub(in crate::tracer) creases: Walls,
+    /// The walls of half-spaces that hold a line exactly if the line meets the solid: it leaves no
+    /// face before it enters another, and lies outside of no face that it is parallel to.
+    pub(in crate::tracer) met: Walls,
+    /// The walls of half-spaces that hold a ray's origin exactly if the ray meets the solid at some
+    /// t > 0: its line meets the solid, and every face that it leaves lies ahead.
+    pub(in crate::tracer) ahead: Walls,
+}
+
+impl Passage {
+    /// That of lines whose n·d has these signs.
+    #[inline]
+    pub(in crate::tracer) fn of(face_signs: FaceSigns) -> &'static Passage {
+        let index = face_signs.map(|sign| (sign as i8 + 1) as usize);
+        let index = index.into_iter().rev().fold(0, |sum, sign| 3 * sum + sign);
+        &ALL[index]
+    }
+
+    /// The faces that lines enter, in the order of their numbers.
+    pub(in crate::tracer) fn entered(&self) -> impl Iterator<Item = usize> + Clone + use<> {
+        let count = usize::from(self.entered_count);
+        self.entered.into_iter().take(count).map(usize::from)
+    }
+
+    /// All pairs of faces that lines enter, in increasing order, as indices of
+    /// [`Passage::entered`]; the lower one first.
+    pub(in crate::tracer) fn pairs(&self) -> &[[u8; 2]] {
+        &self.pairs[..self.creases.count()]
+    }
+
+    const fn with_signs(signs: FaceSigns) -> Passage {
+        let mut passage = Passage {
+            entered: [0; 4],
+            entered_count: 0,
+            pairs: [[0; 2]; EDGES.len()],
+            creases: Walls::none(),
+            met: Walls::none(),
+            ahead: Walls::none(),
+        };
+        // The index of each face among those that are entered.
+        let mut indices = [0; 4];
+        let mut face = 0;
+        while face < 4 {
+            match signs[face as usize] {
+                Ordering::Less => {
+                    indices[face as usize] = passage.entered_count;
+                    passage.entered[passage.entered_count as usize] = face;
+                    passage.entered_count += 1;
+                }
+                Ordering::Equal => {
+                    let closed = true;
+                    passage.met = passage.met.add(Wall::Face { face, closed });
+                }
+                Ordering::Greater => {
+                    let closed = false;
+                    passage.ahead = passage.ahead.add(Wall::Face { face, closed });
+                }
+            }
+            face += 1;
+        }
+        let mut edge = 0;
+        while edge < EDGES.len() {
+            let (i, j, _) = EDGES[edge];
+            let (sign, other) = (signs[i], signs[j]);
+            let opposite = sign.is_gt();
+            let wall = Wall::Edge {
+                edge: edge as u8,
+                opposite,
+            };
+            if sign.is_lt() && other.is_lt() {
+                passage.pairs[passage.creases.count as usize] = [indices[i], indices[j]];
+                passage.creases = passage.creases.add(wall);
+            }
+            if sign.is_ne() && sign as i8 == -(other as i8) {
+                passage.met = passage.met.add(wall);
+            }
+            edge += 1;
+        }
+        let mut wall = 0;
+        while wall < passage.met.count as usize {
+            passage.ahead = passage.ahead.add(passage.met.all[wall]);
+            wall += 1;
+        }
+        passage
+    }
+}
+
+/// By the signs of the faces, as digits.
+static ALL: [Passage; 81] = {
+    const SIGNS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
+    let mut all = [Passage::with_signs([Ordering::Less; 4]); 81];
+    let mut index = 0;
+    while index < all.len() {
+        let digits = [index % 3, index / 3 % 3, index / 9 % 3, index / 27];
+        let [a, b, c, d] = digits;
+        all[index] = Passage::with_signs([SIGNS[a], SIGNS[b], SIGNS[c], SIGNS[d]]);
+        index += 1;
+    }
+    all
+};
