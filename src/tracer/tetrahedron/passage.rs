@@ -7,7 +7,7 @@ use super::FaceSigns;
 use crate::scene::EDGES;
 
 /// The border of a half-space that tells where lines of one direction meet a tetrahedron.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::tracer) enum Wall {
     /// The plane of a face. The half-space is where f ≤ 0, or f < 0 if it is not `closed`.
     Face { face: u8, closed: bool },
@@ -192,3 +192,52 @@ static ALL: [Passage; 81] = {
     }
     all
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_signs_have_the_faces_and_walls_of_their_definitions() {
+        const SIGNS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
+        for number in 0..81 {
+            let signs = [1, 3, 9, 27].map(|power| SIGNS[number / power % 3]);
+            let passage = Passage::of(signs);
+            let faces = |sign| (0..4).filter(move |face| signs[usize::from(*face)] == sign);
+            let entered: Vec<u8> = faces(Ordering::Less).collect();
+            assert!(
+                passage
+                    .entered()
+                    .eq(entered.iter().copied().map(usize::from))
+            );
+            let edge_of = |[one, other]: [u8; 2]| {
+                let pair = [one, other].map(|index| usize::from(entered[usize::from(index)]));
+                EDGES.iter().position(|(i, j, _)| [*i, *j] == pair)
+            };
+            let pairs: Vec<_> = passage.pairs().iter().copied().map(edge_of).collect();
+            let walls = |is_wall: fn(Ordering, Ordering) -> bool| {
+                let edges = EDGES.iter().enumerate();
+                let edges = edges.filter(move |(_, (i, j, _))| is_wall(signs[*i], signs[*j]));
+                edges.map(move |(edge, (i, ..))| Wall::Edge {
+                    edge: edge as u8,
+                    opposite: signs[*i] == Ordering::Greater,
+                })
+            };
+            let creases: Vec<Wall> = walls(|i, j| i.is_lt() && j.is_lt()).collect();
+            assert_eq!(passage.creases.iter().collect::<Vec<_>>(), creases);
+            let edge = |wall: &Wall| match wall {
+                Wall::Edge { edge, .. } => Some(usize::from(*edge)),
+                Wall::Face { .. } => None,
+            };
+            assert_eq!(pairs, creases.iter().map(edge).collect::<Vec<_>>());
+            let face = |closed| move |face| Wall::Face { face, closed };
+            let beside = faces(Ordering::Equal).map(face(true));
+            let met = beside.chain(walls(|i, j| i.is_ne() && i == j.reverse()));
+            let met: Vec<Wall> = met.collect();
+            assert_eq!(passage.met.iter().collect::<Vec<_>>(), met);
+            let left = faces(Ordering::Greater).map(face(false));
+            let ahead: Vec<Wall> = left.chain(met).collect();
+            assert_eq!(passage.ahead.iter().collect::<Vec<_>>(), ahead);
+        }
+    }
+}
