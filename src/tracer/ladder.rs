@@ -182,7 +182,8 @@ pub(super) struct Ladder<'f> {
     threads: &'f Herd,
     /// Pictures that no thread is using. A thread that finds none makes one.
     arbitrary: Mutex<Vec<ArbitraryPicture<'f>>>,
-    colors: Palette<'f>,
+    /// Made when it is first needed.
+    colors: OnceLock<Palette<'f>>,
 }
 
 /// The frame in arbitrary precision, for one thread at a time. Digits that one pixel needed are
@@ -215,7 +216,7 @@ impl<'f> Ladder<'f> {
             double_double: OnceLock::new(),
             threads,
             arbitrary: Mutex::default(),
-            colors: Palette::new(scene, arena),
+            colors: OnceLock::new(),
         }
     }
 }
@@ -343,7 +344,11 @@ impl Pixels for Ladder<'_> {
         // A colour halfway between two floats needs arbitrary precision, which is too slow for each
         // pixel of a face: so it is settled once.
         let settle = || self.color(decision);
-        let color = color.unwrap_or_else(|| *self.colors.get(decision).get_or_init(settle));
+        let colors = || Palette::new(self.scene, &self.threads.get());
+        let color = color.unwrap_or_else(|| {
+            let colors = self.colors.get_or_init(colors);
+            *colors.get(decision).get_or_init(settle)
+        });
         ((decision, color), rung)
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use bumpalo::Bump;
+use bumpalo_herd::Member;
 
 use super::decision::{Decision, Seen};
 use crate::scene::Scene;
@@ -26,12 +26,12 @@ const OF_A_TETRAHEDRON: usize = 5;
 
 impl<'f> Palette<'f> {
     /// An empty one.
-    pub(super) fn new(scene: &Scene, arena: &'f Bump) -> Self {
+    pub(super) fn new(scene: &Scene, memory: &Member<'f>) -> Self {
         let (spheres, tetrahedra) = (scene.spheres().len(), scene.tetrahedra().len());
         let of_a_view = spheres * OF_A_SPHERE + tetrahedra * OF_A_TETRAHEDRON;
         let count = WITHOUT_SOLIDS + 2 * of_a_view;
         Palette {
-            slots: arena.alloc_slice_fill_with(count, |_| OnceLock::new()),
+            slots: memory.alloc_slice_fill_with(count, |_| OnceLock::new()),
             spheres,
             tetrahedra,
         }
