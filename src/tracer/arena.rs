@@ -3,6 +3,7 @@
 //! The parts in `setup` and `threads` own nothing, so none is dropped. The tiles own their memory,
 //! which the next frame reuses.
 
+use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, OnceLock};
 
@@ -68,6 +69,43 @@ impl<T: Default> OnDemand<T> {
     }
 }
 
+/// Keeps short slices that are made between other work, in blocks of memory. A block is filled
+/// before it is needed: then a copy need not wait until what was there comes into the cache, one
+/// line at a time, and nothing that needs the copy has to wait for it.
+pub(super) struct Blocks<'f, T> {
+    /// What is left of a block.
+    rest: Cell<&'f mut [T]>,
+}
+
+/// The bytes of a block: a part of the first cache.
+const BLOCK: usize = 1 << 14;
+
+impl<T> Default for Blocks<'_, T> {
+    fn default() -> Self {
+        Blocks {
+            rest: Cell::default(),
+        }
+    }
+}
+
+impl<'f, T: Copy> Blocks<'f, T> {
+    /// A copy of a slice, in a block or in a part of `memory` that becomes one.
+    pub(super) fn keep(&self, items: &[T], memory: &Member<'f>) -> &'f [T] {
+        let Some(first) = items.first() else {
+            return &[];
+        };
+        let mut rest = self.rest.take();
+        if rest.len() < items.len() {
+            let count = items.len().max(BLOCK / size_of::<T>());
+            rest = memory.alloc_slice_fill_copy(count, *first);
+        }
+        let (kept, rest) = rest.split_at_mut(items.len());
+        kept.copy_from_slice(items);
+        self.rest.set(rest);
+        kept
+    }
+}
+
 /// Memory for slices that live as long as a frame.
 pub(super) trait SliceAllocator<'f> {
     /// A slice of all items.
@@ -124,7 +162,9 @@ pub(super) fn bucketed<T: Copy + Default>(
 
 /// A slice of all items, however many there are.
 pub(super) fn collect<T>(arena: &Bump, items: impl IntoIterator<Item = T>) -> &[T] {
-    let mut all = Vec::new_in(arena);
+    let items = items.into_iter();
+    let most = items.size_hint().1;
+    let mut all = Vec::with_capacity_in(most.unwrap_or(0), arena);
     all.extend(items);
     all.into_bump_slice()
 }

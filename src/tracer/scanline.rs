@@ -92,6 +92,7 @@ mod visibility;
 mod write;
 
 use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
 
 use fearless_simd::Level;
@@ -189,6 +190,7 @@ impl<'f> RowTracer<'f> {
                 grid: frame.grid,
                 level,
                 threads: &arena.threads,
+                free: Mutex::default(),
                 most: crowd.late_bytes,
                 taken: AtomicUsize::new(0),
             },

@@ -1,7 +1,6 @@
 //! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
 //! from one row to the next.
 
-use bumpalo_herd::Member;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::image::MAX_SIZE;
@@ -206,17 +205,15 @@ pub(crate) struct BandEdges<'a> {
 }
 
 impl<'a> BandEdges<'a> {
-    /// The same in other memory.
-    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>) -> BandEdges<'k> {
+    /// The same edges, which `keep` copies to other memory.
+    pub(crate) fn kept<'k>(
+        &self,
+        keep: impl FnOnce(&[[f64; ROWS]]) -> &'k [[f64; ROWS]],
+    ) -> BandEdges<'k> {
         BandEdges {
-            edges: memory.alloc_slice_copy(self.edges),
+            edges: keep(self.edges),
             counts: self.counts,
         }
-    }
-
-    /// How many bytes the edges take.
-    pub(crate) fn size(&self) -> usize {
-        size_of_val(self.edges)
     }
 
     /// The edges in a row, by its number in the band.

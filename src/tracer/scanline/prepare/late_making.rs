@@ -21,7 +21,7 @@ use crate::tracer::scanline::prepare::front_faces::FrontFaces;
 use crate::tracer::scanline::prepare::late_faces::{
     Cast, Kept, KeptRegion, KeptRegions, LateFaces, SplitFaces,
 };
-use crate::tracer::scanline::prepare::late_source::{LateMaker, LateSource, LateWork};
+use crate::tracer::scanline::prepare::late_source::{LateMaker, LateMemory, LateSource, LateWork};
 use crate::tracer::scanline::prepare::outline::OutlinedFaces;
 use crate::tracer::scanline::prepare::shadows::shadows_on_face;
 use crate::tracer::scanline::row_edges::{Added, RowEdges};
@@ -50,16 +50,20 @@ impl<'f> LateFaces<'f> {
     ) -> &'f SplitFaces<'f> {
         self.made.get_or_init(|| {
             work.spare.reset();
-            let memory = maker.memory();
+            let LateMemory {
+                all,
+                paints: blocks,
+                ..
+            } = maker.memory();
             let color = |decision| maker.source.pixels.color(decision);
             let (faces, regions, paints) = self.make(maker.source, &color, &work.spare);
-            memory.alloc(SplitFaces {
+            all.alloc(SplitFaces {
                 front_faces: faces,
                 kinds: RegionKinds {
-                    all: memory.alloc_slice_copy(regions.kinds.all),
+                    all: all.alloc_slice_copy(regions.kinds.all),
                     receivers: regions.kinds.receivers,
                 },
-                paints: paints.kept_in(memory),
+                paints: paints.kept(|paints| blocks.keep(paints, all)),
                 kept: self.keep(&regions, row, maker, (&work.spare, &mut work.edges)),
             })
         })
@@ -94,8 +98,13 @@ impl<'f> LateFaces<'f> {
         if has_memory && is_low {
             edges.clear();
             let added = cross(regions, row, edges, maker.source, spare);
-            let band = edges.band(&added).kept_in(maker.memory());
-            maker.take(band.size());
+            let LateMemory {
+                all, edges: blocks, ..
+            } = maker.memory();
+            let band = edges.band(&added).kept(|edges| {
+                maker.take(size_of_val(edges));
+                blocks.keep(edges, all)
+            });
             return Kept::Edges { first: row, band };
         }
         let is_ellipse = |region: &Region<'_>| region.ellipse().is_some();
@@ -113,7 +122,7 @@ impl<'f> LateFaces<'f> {
         (regions, has_memory): (&Regions<'_>, bool),
         maker: &LateMaker<'_, 'f>,
     ) -> &'f [KeptRegion<'f>] {
-        let (source, memory) = (maker.source, maker.memory());
+        let (source, memory) = (maker.source, &maker.memory().all);
         let picture = source.pixels.bounded();
         let view = picture.view(self.mirrored);
         // A tetrahedron's shadow has all rows of the solid. So each has a region, in the order of

@@ -1,16 +1,21 @@
 //! What late faces are made from, and the memory in which a thread makes them.
 
 use std::cell::{Cell, OnceCell};
+use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering::Relaxed;
 
 use bumpalo::Bump;
 use bumpalo_herd::{Herd, Member};
 use fearless_simd::Level;
+use smallvec::SmallVec;
 
+use crate::tracer::arena::Blocks;
 use crate::tracer::ladder::RowPixels;
-use crate::tracer::scanline::grid::Grid;
+use crate::tracer::pool::lock;
+use crate::tracer::scanline::grid::{Grid, ROWS};
 use crate::tracer::scanline::row_edges::RowEdges;
+use crate::tracer::scanline::write::paint::Paint;
 
 /// What late faces are made from.
 pub(crate) struct LateSource<'f> {
@@ -19,12 +24,23 @@ pub(crate) struct LateSource<'f> {
     pub(crate) level: Level,
     /// The memory for what threads make.
     pub(crate) threads: &'f Herd,
+    /// Memory that a thread used before, and no thread uses now; that of few threads needs none
+    /// itself.
+    pub(crate) free: Mutex<SmallVec<[LateMemory<'f>; 16]>>,
     /// How many bytes of it regions may take. Each thread may go beyond this with one solid and
     /// with what it has not counted yet, and then each shadow takes what tells its caster and its
     /// rows.
     pub(crate) most: usize,
     /// How many they take.
     pub(crate) taken: AtomicUsize,
+}
+
+/// The memory in which one thread at a time keeps late faces.
+pub(crate) struct LateMemory<'f> {
+    pub(crate) all: Member<'f>,
+    /// Parts of it, for edges and paints.
+    pub(super) edges: Blocks<'f, [f64; ROWS]>,
+    pub(super) paints: Blocks<'f, Paint>,
 }
 
 /// What a thread needs while it makes late faces.
@@ -40,7 +56,7 @@ pub(crate) struct LateWork {
 pub(crate) struct LateMaker<'s, 'f> {
     pub(crate) source: &'s LateSource<'f>,
     /// The thread's memory, once it is asked for.
-    memory: OnceCell<Member<'f>>,
+    memory: OnceCell<LateMemory<'f>>,
     /// How many bytes regions took that [`LateSource::taken`] does not count yet.
     uncounted: Cell<usize>,
 }
@@ -59,8 +75,15 @@ impl<'s, 'f> LateMaker<'s, 'f> {
     }
 
     /// The memory for what the frame keeps.
-    pub(super) fn memory(&self) -> &Member<'f> {
-        self.memory.get_or_init(|| self.source.threads.get())
+    pub(super) fn memory(&self) -> &LateMemory<'f> {
+        self.memory.get_or_init(|| {
+            let free = lock(&self.source.free).pop();
+            free.unwrap_or_else(|| LateMemory {
+                all: self.source.threads.get(),
+                edges: Blocks::default(),
+                paints: Blocks::default(),
+            })
+        })
     }
 
     /// Whether regions may take more memory.
@@ -84,6 +107,9 @@ impl<'s, 'f> LateMaker<'s, 'f> {
 
 impl Drop for LateMaker<'_, '_> {
     fn drop(&mut self) {
+        if let Some(memory) = self.memory.take() {
+            lock(&self.source.free).push(memory);
+        }
         if self.uncounted.get() > 0 {
             self.count();
         }

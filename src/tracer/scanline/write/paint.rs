@@ -2,7 +2,6 @@
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
-use bumpalo_herd::Member;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
@@ -104,9 +103,9 @@ impl std::ops::Index<PaintNumber> for AllPaints<'_> {
 }
 
 impl AllPaints<'_> {
-    /// The same in other memory.
-    pub(crate) fn kept_in<'k>(&self, memory: &Member<'k>) -> AllPaints<'k> {
-        AllPaints(memory.alloc_slice_copy(self.0))
+    /// The same paints, which `keep` copies to other memory.
+    pub(crate) fn kept<'k>(&self, keep: impl FnOnce(&[Paint]) -> &'k [Paint]) -> AllPaints<'k> {
+        AllPaints(keep(self.0))
     }
 }
 
