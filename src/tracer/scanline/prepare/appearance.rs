@@ -18,7 +18,7 @@ use crate::tracer::scanline::prepare::builder::Builder;
 use crate::tracer::scanline::prepare::depth::face_plane;
 use crate::tracer::scanline::prepare::front_faces::{FrontFace, FrontFaces};
 use crate::tracer::scanline::prepare::late_faces::LateFaces;
-use crate::tracer::scanline::prepare::outline::{Outlined, OutlinedFaces, Outlines};
+use crate::tracer::scanline::prepare::outline::{OutlinedFaces, Outlines};
 use crate::tracer::scanline::prepare::shadows::{SurfaceShadow, casters_on, shadows_on_face};
 use crate::tracer::scanline::prepare::solids::{Appearance, PreparedSolids};
 use crate::tracer::scanline::shade::light::Lighting;
@@ -47,16 +47,25 @@ pub(crate) fn prepare_solids<'f>(
     let sides = collect(arena, sides);
     // Colours and casters lie in another order: in loops of their own, the processor reads several
     // at once.
-    let colors = numbers.iter().map(|&number| picture.solid_color(number));
+    let is_sphere = |&number: &usize| matches!(picture.scene.solid(number), Solid::Sphere(_));
+    let spheres = numbers.iter().copied().filter(is_sphere);
+    let colors = spheres.clone().map(|number| picture.solid_color(number));
     let colors = collect(arena, colors);
-    let casters = numbers.iter().map(|&number| appearances.casters(number));
-    let casters = collect(arena, casters);
+    let casters = collect(arena, spheres.map(|number| appearances.casters(number)));
+    let mut of_spheres = colors.iter().zip(casters);
     let is_late = appearances.has_shadows && outlines.face_shadows() >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
     outlines.for_each(|solid| {
         let index = depths.len();
         let appearance = match view.solid(solid.number) {
+            Solid::Sphere(sphere) => match (of_spheres.next(), solid.outline.ellipse()) {
+                (Some((color, casters)), Some(outline)) => {
+                    appearances.sphere(solid.number, sphere, (outline, *color, casters), parts)
+                }
+                // The outline of a sphere is an ellipse.
+                _ => Appearance::Flat(parts.paints.add(Decision::Background)),
+            },
             Solid::Tetrahedron(t) if is_late => {
                 parts.late_faces += 1;
                 let number = parts.late_faces - 1;
@@ -67,7 +76,10 @@ pub(crate) fn prepare_solids<'f>(
                     t,
                 )))
             }
-            _ => appearances.of(&solid, (colors[index], casters[index]), parts),
+            Solid::Tetrahedron(t) => {
+                let front_faces = appearances.front_faces(&solid.faces(), t, parts);
+                Appearance::FrontFaces(arena.alloc(front_faces))
+            }
         };
         let index = SolidIndex(index as u32);
         let kind = if mirrored {
@@ -117,33 +129,12 @@ impl<'p, 's, 'f> Appearances<'p, 's, 'f> {
         }
     }
 
-    /// The casters of a solid, if it is a sphere and the stage has shadows.
+    /// The casters of a sphere, if the stage has shadows.
     fn casters(&self, number: usize) -> &'s [u16] {
         if self.has_shadows {
             self.picture.scene.facts().casters.on(number, None)
         } else {
             &[]
-        }
-    }
-
-    /// The appearance of a solid of this colour and with these casters, whose regions and paints
-    /// are added.
-    fn of(
-        &self,
-        solid: &Outlined<'f>,
-        (color, casters): (Vector<Bounded>, &[u16]),
-        parts: &mut Builder<'f, '_>,
-    ) -> Appearance<'f> {
-        match (self.view.solid(solid.number), solid.outline.ellipse()) {
-            (Solid::Sphere(sphere), Some(outline)) => {
-                self.sphere(solid.number, sphere, (outline, color, casters), parts)
-            }
-            // The outline of a sphere is an ellipse.
-            (Solid::Sphere(_), None) => Appearance::Flat(parts.paints.add(Decision::Background)),
-            (Solid::Tetrahedron(t), _) => {
-                let front_faces = self.front_faces(&solid.faces(), t, parts);
-                Appearance::FrontFaces(parts.arena.alloc(front_faces))
-            }
         }
     }
 
