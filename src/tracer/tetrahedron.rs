@@ -53,6 +53,7 @@ pub(super) struct EdgeFunctions<R> {
 impl<R: Real> Tetrahedron<R> {
     /// The normals are those that [`outward_normals`] gives. Exact arithmetic has decided
     /// `supports`, `facing_light`, and whether the edges 0→1, 0→2, 0→3 are `right_handed`.
+    #[inline(always)]
     pub(super) fn new(
         vertices: [Vector<R>; 4],
         normals: [Vector<R>; 4],

@@ -104,6 +104,7 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
         usize::from(self.places[index])
     }
 
+    #[inline(always)]
     fn in_view(&self, index: usize, solid: Tetrahedron<R>) -> TetrahedronInView<R> {
         TetrahedronInView {
             solid,

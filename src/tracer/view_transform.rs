@@ -114,6 +114,7 @@ impl<R: Real> ViewTransform<R> {
     }
 
     /// The same with normals from another function.
+    #[inline(always)]
     pub(super) fn tetrahedron_with(
         &self,
         scene: &Scene,
