@@ -48,6 +48,12 @@ pub(super) trait RowPixels: Pixels {
 
     /// The samples of all pixels that show what was decided.
     fn color(&self, decision: Decision) -> [f32; 3];
+
+    /// As [`Pixels::pixel`], for a pixel that is known to show the sphere of a decision, in shadow
+    /// or not.
+    fn pixel_on_sphere(&self, _shown: Decision, column: u32, row: u32) -> (Pixel, Rung) {
+        self.pixel(column, row)
+    }
 }
 
 /// What all arithmetics of a frame share.
@@ -292,10 +298,27 @@ struct PixelAt(u32, u32);
 impl Question for PixelAt {
     type Answer = (Decision, Option<[f32; 3]>);
     fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
-        let (decision, normal) = picture.decide(self.0, self.1)?;
-        let color = normal.map(|normal| picture.color(decision, Some(&normal)));
-        Ok((decision, color.transpose()?))
+        colored(picture, picture.decide(self.0, self.1)?)
     }
+}
+
+/// The same for a pixel that is known to show the sphere of a decision.
+struct PixelOnSphere(Decision, u32, u32);
+
+impl Question for PixelOnSphere {
+    type Answer = (Decision, Option<[f32; 3]>);
+    fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
+        colored(picture, picture.decide_on_sphere(self.0, self.1, self.2)?)
+    }
+}
+
+/// The samples of a decision, too, if it has a normal.
+fn colored<R: Real>(
+    picture: &Picture<'_, R>,
+    (decision, normal): (Decision, Option<Normal<R>>),
+) -> Result<(Decision, Option<[f32; 3]>), R::Doubt> {
+    let color = normal.map(|normal| picture.color(decision, Some(&normal)));
+    Ok((decision, color.transpose()?))
 }
 
 /// The samples of all pixels that show what was decided.
@@ -336,11 +359,29 @@ impl RowPixels for Ladder<'_> {
     fn color(&self, decision: Decision) -> [f32; 3] {
         self.settle(&ColorOf(decision)).0
     }
+
+    fn pixel_on_sphere(&self, shown: Decision, column: u32, row: u32) -> (Pixel, Rung) {
+        self.settled(&PixelOnSphere(shown, column, row))
+    }
 }
 
 impl Pixels for Ladder<'_> {
     fn pixel(&self, column: u32, row: u32) -> (Pixel, Rung) {
-        let ((decision, color), rung) = self.settle(&PixelAt(column, row));
+        self.settled(&PixelAt(column, row))
+    }
+
+    fn explain(&self, column: u32, row: u32, traced: Pixel) -> String {
+        self.settle(&Explain(column, row, traced)).0
+    }
+}
+
+impl Ladder<'_> {
+    /// A pixel, its decision and samples settled by the cheapest arithmetic.
+    fn settled(
+        &self,
+        question: &impl Question<Answer = (Decision, Option<[f32; 3]>)>,
+    ) -> (Pixel, Rung) {
+        let ((decision, color), rung) = self.settle(question);
         // A colour halfway between two floats needs arbitrary precision, which is too slow for each
         // pixel of a face: so it is settled once.
         let settle = || self.color(decision);
@@ -350,9 +391,5 @@ impl Pixels for Ladder<'_> {
             *colors.get(decision).get_or_init(settle)
         });
         ((decision, color), rung)
-    }
-
-    fn explain(&self, column: u32, row: u32, traced: Pixel) -> String {
-        self.settle(&Explain(column, row, traced)).0
     }
 }

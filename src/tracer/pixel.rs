@@ -151,6 +151,26 @@ impl<'f, R: Real> Picture<'f, R> {
         self.decide_by(&Right, column, row)
     }
 
+    /// The same, for a pixel that is known to show the sphere of `shown`, in shadow or not.
+    pub(super) fn decide_on_sphere(&self, shown: Decision, column: u32, row: u32) -> Decided<R> {
+        let (mirrored, sphere) = match shown {
+            Decision::Solid(seen) => (false, usize::from(seen.solid)),
+            Decision::Mirrored(seen) => (true, usize::from(seen.solid)),
+            _ => return self.decide(column, row),
+        };
+        // The eye's ray goes on straight into the reflected scene.
+        let ray = self.transform.eye_ray(column, row);
+        match self
+            .view(mirrored)
+            .hit(sphere, &ray, false, SolidKinds::All)?
+        {
+            Some(hit) if self.stage >= Stage::Shadow => {
+                self.solid_at(&Right, mirrored, sphere, &hit)
+            }
+            _ => self.decide(column, row),
+        }
+    }
+
     /// The same by other rules.
     pub(super) fn decide_by(&self, rules: &impl Rules<R>, column: u32, row: u32) -> Decided<R> {
         match self.stage {
@@ -281,14 +301,28 @@ impl<'f, R: Real> Picture<'f, R> {
                 return self.surface_at(rules, surface, (column, row), depth, point);
             }
         }
-        Ok(match hit {
-            Some((solid, hit)) => {
-                let in_shadow = rules.is_in_shadow(self, false, solid, &hit)?;
-                let seen = seen(solid, &hit, in_shadow);
-                (Decision::Solid(seen), normal_of(seen, &hit))
-            }
-            None => (Decision::Background, None),
-        })
+        match hit {
+            Some((solid, hit)) => self.solid_at(rules, false, solid, &hit),
+            None => Ok((Decision::Background, None)),
+        }
+    }
+
+    /// The decision where a solid is in front, directly or in the mirror, in the stages with
+    /// shadows.
+    fn solid_at(
+        &self,
+        rules: &impl Rules<R>,
+        mirrored: bool,
+        solid: usize,
+        hit: &Hit<R>,
+    ) -> Decided<R> {
+        let in_shadow = rules.is_in_shadow(self, mirrored, solid, hit)?;
+        let seen = seen(solid, hit, in_shadow);
+        let decision = match mirrored {
+            true => Decision::Mirrored(seen),
+            false => Decision::Solid(seen),
+        };
+        Ok((decision, normal_of(seen, hit)))
     }
 
     /// The decision where the surface is in front: in shadow, mirroring, or plain.
@@ -311,9 +345,7 @@ impl<'f, R: Real> Picture<'f, R> {
                     .first_hit(pixel, &ray, Some(depth), SolidKinds::All)?
             {
                 let hit = rules.hit(&mirror.view, solid, &ray, hit)?;
-                let in_shadow = rules.is_in_shadow(self, true, solid, &hit)?;
-                let seen = seen(solid, &hit, in_shadow);
-                return Ok((Decision::Mirrored(seen), normal_of(seen, &hit)));
+                return self.solid_at(rules, true, solid, &hit);
             }
         }
         Ok((Decision::Surface, None))

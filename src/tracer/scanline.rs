@@ -376,8 +376,16 @@ impl<'f> RowTracer<'f> {
                     self.write_faces(writer, columns, late, (painters, maker));
                 }
             }
-            Shown::InDoubt => writer.decide(columns.0..columns.1, self.pixels),
+            Shown::InDoubt => self.decide(writer, columns),
         }
+    }
+
+    /// Decides each pixel of some columns by itself.
+    #[inline(never)]
+    fn decide(&self, writer: &mut RowWriter<'_>, columns: Columns) {
+        writer.decide(columns.0..columns.1, |column, row| {
+            self.pixels.pixel(column, row)
+        });
     }
 
     /// Writes columns that show a solid with late faces.
@@ -405,7 +413,7 @@ impl<'f> RowTracer<'f> {
         for (columns, shows) in face_splitter.split(numbered, writer.row, columns, cross) {
             match shows {
                 Shown::Paint(paint) => writer.fill(columns, &faces.paints[paint]),
-                _ => writer.decide(columns.0..columns.1, self.pixels),
+                _ => self.decide(writer, columns),
             }
         }
     }

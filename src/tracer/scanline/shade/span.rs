@@ -3,7 +3,7 @@
 
 use fearless_simd::dispatch;
 
-use crate::tracer::ladder::Pixels;
+use crate::tracer::ladder::RowPixels;
 use crate::tracer::scanline::grid::Columns;
 use crate::tracer::scanline::shade::columns::{SphereCache, SphereColumns, bit_of};
 use crate::tracer::scanline::shade::policy::{Certified, Precision};
@@ -33,12 +33,12 @@ impl SpanShader {
         writer: &mut RowWriter<'r>,
         columns: Columns,
         shaded: &'r ShadedSphere<'_>,
-        pixels: &dyn Pixels,
+        pixels: &dyn RowPixels,
     ) {
         // Its columns would take longer than its pixels.
         if shaded.constants.is_small && writer.precision == Precision::Certified {
             self.shade_run(writer, columns, shaded, None);
-            self.decide_doubts(writer, pixels);
+            self.decide_doubts(writer, shaded, pixels);
             return;
         }
         let sphere = self.cache.of(shaded, writer.row, writer.level, writer.grid);
@@ -66,13 +66,19 @@ impl SpanShader {
                 }
             }
         }
-        self.decide_doubts(writer, pixels);
+        self.decide_doubts(writer, shaded, pixels);
     }
 
     /// Decides the columns left in doubt.
-    fn decide_doubts(&mut self, writer: &mut RowWriter<'_>, pixels: &dyn Pixels) {
+    fn decide_doubts(
+        &mut self,
+        writer: &mut RowWriter<'_>,
+        shaded: &ShadedSphere<'_>,
+        pixels: &dyn RowPixels,
+    ) {
         if !self.doubts.is_empty() {
-            writer.decide(self.doubts.drain(..), pixels);
+            let pixel = |column, row| pixels.pixel_on_sphere(shaded.in_light, column, row);
+            writer.decide(self.doubts.drain(..), pixel);
         }
     }
 

@@ -5,7 +5,8 @@ use std::ops::Range;
 use fearless_simd::{Level, dispatch};
 
 use crate::tracer::decision::Decision;
-use crate::tracer::ladder::Pixels;
+use crate::tracer::ladder::Rung;
+use crate::tracer::pixel::Pixel;
 use crate::tracer::progress::Progress;
 use crate::tracer::scanline::grid::{Columns, Grid};
 use crate::tracer::scanline::shade::policy::Precision;
@@ -108,11 +109,15 @@ impl<'r> RowWriter<'r> {
         self.tally
     }
 
-    /// Decides each pixel by itself.
-    pub(crate) fn decide(&mut self, columns: impl IntoIterator<Item = u32>, pixels: &dyn Pixels) {
+    /// Decides each pixel by itself, as `pixel` tells from its column and row.
+    pub(crate) fn decide(
+        &mut self,
+        columns: impl IntoIterator<Item = u32>,
+        pixel: impl Fn(u32, u32) -> (Pixel, Rung),
+    ) {
         for column in columns {
             self.mark_written();
-            let ((decision, color), rung) = pixels.pixel(column, self.row);
+            let ((decision, color), rung) = pixel(column, self.row);
             let index = self.pixels((column, column)).start;
             self.samples[3 * index..3 * index + 3].copy_from_slice(&color);
             if let Some(decisions) = &mut self.decisions {
