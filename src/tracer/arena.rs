@@ -69,9 +69,8 @@ impl<T: Default> OnDemand<T> {
     }
 }
 
-/// Keeps short slices that are made between other work, in blocks of memory. A block is filled
-/// before it is needed: then a copy need not wait until what was there comes into the cache, one
-/// line at a time, and nothing that needs the copy has to wait for it.
+/// Short slices, kept in blocks of memory. A block is written as a whole before it is needed, so
+/// that it is in the cache: a copy to other memory would wait for each of its cache lines.
 pub(super) struct Blocks<'f, T> {
     /// What is left of a block.
     rest: Cell<&'f mut [T]>,
@@ -162,9 +161,7 @@ pub(super) fn bucketed<T: Copy + Default>(
 
 /// A slice of all items, however many there are.
 pub(super) fn collect<T>(arena: &Bump, items: impl IntoIterator<Item = T>) -> &[T] {
-    let items = items.into_iter();
-    let most = items.size_hint().1;
-    let mut all = Vec::with_capacity_in(most.unwrap_or(0), arena);
+    let mut all = Vec::new_in(arena);
     all.extend(items);
     all.into_bump_slice()
 }

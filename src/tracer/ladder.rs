@@ -50,7 +50,7 @@ pub(super) trait RowPixels: Pixels {
     fn color(&self, decision: Decision) -> [f32; 3];
 
     /// As [`Pixels::pixel`], for a pixel that is known to show the sphere of a decision, in shadow
-    /// or not.
+    /// or not. Arithmetic without bounds may see something else there: it decides as for any pixel.
     fn pixel_on_sphere(&self, _shown: Decision, column: u32, row: u32) -> (Pixel, Rung) {
         self.pixel(column, row)
     }
@@ -188,8 +188,8 @@ pub(super) struct Ladder<'f> {
     threads: &'f Herd,
     /// Pictures that no thread is using. A thread that finds none makes one.
     arbitrary: Mutex<Vec<ArbitraryPicture<'f>>>,
-    /// Made when it is first needed.
-    colors: OnceLock<Palette<'f>>,
+    /// The same.
+    palette: OnceLock<Palette<'f>>,
 }
 
 /// The frame in arbitrary precision, for one thread at a time. Digits that one pixel needed are
@@ -222,7 +222,7 @@ impl<'f> Ladder<'f> {
             double_double: OnceLock::new(),
             threads,
             arbitrary: Mutex::default(),
-            colors: OnceLock::new(),
+            palette: OnceLock::new(),
         }
     }
 }
@@ -292,11 +292,14 @@ trait Question {
     fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt>;
 }
 
+/// A decision, and its samples if it has a normal.
+type MaybeColored = (Decision, Option<[f32; 3]>);
+
 /// The decision of the pixel at a column and a row, and its samples if it has a normal.
 struct PixelAt(u32, u32);
 
 impl Question for PixelAt {
-    type Answer = (Decision, Option<[f32; 3]>);
+    type Answer = MaybeColored;
     fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
         colored(picture, picture.decide(self.0, self.1)?)
     }
@@ -306,7 +309,7 @@ impl Question for PixelAt {
 struct PixelOnSphere(Decision, u32, u32);
 
 impl Question for PixelOnSphere {
-    type Answer = (Decision, Option<[f32; 3]>);
+    type Answer = MaybeColored;
     fn answer<R: Real>(&self, picture: &Picture<'_, R>) -> Result<Self::Answer, R::Doubt> {
         colored(picture, picture.decide_on_sphere(self.0, self.1, self.2)?)
     }
@@ -316,7 +319,7 @@ impl Question for PixelOnSphere {
 fn colored<R: Real>(
     picture: &Picture<'_, R>,
     (decision, normal): (Decision, Option<Normal<R>>),
-) -> Result<(Decision, Option<[f32; 3]>), R::Doubt> {
+) -> Result<MaybeColored, R::Doubt> {
     let color = normal.map(|normal| picture.color(decision, Some(&normal)));
     Ok((decision, color.transpose()?))
 }
@@ -377,18 +380,14 @@ impl Pixels for Ladder<'_> {
 
 impl Ladder<'_> {
     /// A pixel, its decision and samples settled by the cheapest arithmetic.
-    fn settled(
-        &self,
-        question: &impl Question<Answer = (Decision, Option<[f32; 3]>)>,
-    ) -> (Pixel, Rung) {
+    fn settled(&self, question: &impl Question<Answer = MaybeColored>) -> (Pixel, Rung) {
         let ((decision, color), rung) = self.settle(question);
         // A colour halfway between two floats needs arbitrary precision, which is too slow for each
         // pixel of a face: so it is settled once.
-        let settle = || self.color(decision);
-        let colors = || Palette::new(self.scene, &self.threads.get());
         let color = color.unwrap_or_else(|| {
-            let colors = self.colors.get_or_init(colors);
-            *colors.get(decision).get_or_init(settle)
+            let palette = || Palette::new(self.scene, &self.threads.get());
+            let palette = self.palette.get_or_init(palette);
+            *palette.get(decision).get_or_init(|| self.color(decision))
         });
         ((decision, color), rung)
     }

@@ -153,22 +153,26 @@ impl<'f, R: Real> Picture<'f, R> {
 
     /// The same, for a pixel that is known to show the sphere of `shown`, in shadow or not.
     pub(super) fn decide_on_sphere(&self, shown: Decision, column: u32, row: u32) -> Decided<R> {
-        let (mirrored, sphere) = match shown {
-            Decision::Solid(seen) => (false, usize::from(seen.solid)),
-            Decision::Mirrored(seen) => (true, usize::from(seen.solid)),
-            _ => return self.decide(column, row),
-        };
+        if let Some((mirrored, sphere)) = solid_of(shown)
+            && let Some(hit) = self.hit_on_line(mirrored, sphere, (column, row))?
+        {
+            self.solid_at(&Right, mirrored, sphere, &hit)
+        } else {
+            // There is no such pixel: a sphere that is shown is hit.
+            self.decide(column, row)
+        }
+    }
+
+    /// Where the line of a pixel first hits a solid, directly or in the mirror, whatever hides that.
+    fn hit_on_line(
+        &self,
+        mirrored: bool,
+        solid: usize,
+        (column, row): (u32, u32),
+    ) -> Result<Option<Hit<R>>, R::Doubt> {
         // The eye's ray goes on straight into the reflected scene.
         let ray = self.transform.eye_ray(column, row);
-        match self
-            .view(mirrored)
-            .hit(sphere, &ray, false, SolidKinds::All)?
-        {
-            Some(hit) if self.stage >= Stage::Shadow => {
-                self.solid_at(&Right, mirrored, sphere, &hit)
-            }
-            _ => self.decide(column, row),
-        }
+        self.view(mirrored).hit(solid, &ray, false, SolidKinds::All)
     }
 
     /// The same by other rules.
@@ -191,17 +195,14 @@ impl<'f, R: Real> Picture<'f, R> {
         column: u32,
         row: u32,
     ) -> Result<Option<[f32; 3]>, R::Doubt> {
-        let (view, seen) = match decision {
-            Decision::Solid(seen) => (self.view(false), seen),
-            // The eye's ray goes on straight into the reflected scene.
-            Decision::Mirrored(seen) => (self.view(true), seen),
-            _ => return Ok(None),
-        };
-        let ray = self.transform.eye_ray(column, row);
-        let Some(hit) = view.hit(usize::from(seen.solid), &ray, false, SolidKinds::All)? else {
+        let Some((mirrored, solid)) = solid_of(decision) else {
             return Ok(None);
         };
-        if self.stage >= Stage::Shadow && view.shading.facing_light(&hit.normal)?.is_le() {
+        let Some(hit) = self.hit_on_line(mirrored, solid, (column, row))? else {
+            return Ok(None);
+        };
+        let shading = &self.view(mirrored).shading;
+        if self.stage >= Stage::Shadow && shading.facing_light(&hit.normal)?.is_le() {
             return Ok(None);
         }
         self.color(decision, Some(&hit.normal)).map(Some)
@@ -307,8 +308,7 @@ impl<'f, R: Real> Picture<'f, R> {
         }
     }
 
-    /// The decision where a solid is in front, directly or in the mirror, in the stages with
-    /// shadows.
+    /// The decision where a solid is in front, directly or in the mirror.
     fn solid_at(
         &self,
         rules: &impl Rules<R>,
@@ -316,11 +316,13 @@ impl<'f, R: Real> Picture<'f, R> {
         solid: usize,
         hit: &Hit<R>,
     ) -> Decided<R> {
-        let in_shadow = rules.is_in_shadow(self, mirrored, solid, hit)?;
+        let has_shadows = self.stage >= Stage::Shadow;
+        let in_shadow = has_shadows && rules.is_in_shadow(self, mirrored, solid, hit)?;
         let seen = seen(solid, hit, in_shadow);
-        let decision = match mirrored {
-            true => Decision::Mirrored(seen),
-            false => Decision::Solid(seen),
+        let decision = if mirrored {
+            Decision::Mirrored(seen)
+        } else {
+            Decision::Solid(seen)
         };
         Ok((decision, normal_of(seen, hit)))
     }
@@ -404,6 +406,15 @@ impl<'f, R: Real> Picture<'f, R> {
             Solid::Sphere(sphere) => sphere.color,
             Solid::Tetrahedron(tetrahedron) => tetrahedron.color,
         })
+    }
+}
+
+/// Whether a pixel shows a solid in the mirror, and the number of the solid, if it shows one.
+fn solid_of(decision: Decision) -> Option<(bool, usize)> {
+    match decision {
+        Decision::Solid(seen) => Some((false, seen.solid.into())),
+        Decision::Mirrored(seen) => Some((true, seen.solid.into())),
+        _ => None,
     }
 }
 

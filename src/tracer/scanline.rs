@@ -51,7 +51,8 @@
 //!
 //! Edges and visibility are f32 and f64 with proven bounds for every kernel: a filter. Shading has
 //! bounds for the kernel exact only. A pixel in doubt is decided by itself (`ladder.rs`), by the
-//! definition of the picture (`pixel.rs`), from which every formula here is derived.
+//! definition of the picture (`pixel.rs`), from which every formula here is derived; one that
+//! certainly shows a sphere is asked for nothing but the shadow and the colour of that sphere.
 //!
 //! A new kind of solid, such as a cylinder, would need
 //!
@@ -190,9 +191,9 @@ impl<'f> RowTracer<'f> {
                 grid: frame.grid,
                 level,
                 threads: &arena.threads,
-                free: Mutex::default(),
                 most: crowd.late_bytes,
                 taken: AtomicUsize::new(0),
+                free: Mutex::default(),
             },
             late_edges: crowd.late_edges,
             frame,

@@ -289,9 +289,9 @@ pub(super) fn certain_face_signs(
     Some(face_signs)
 }
 
-/// Which of the faces that a line enters it enters last, of several at once the lowest. `pairs` are
-/// those of [`Passage::pairs`]; `is_first_last` tells whether the line enters the first face of a
-/// pair last.
+/// The index of the face that a line enters last among those that it enters; of several at once, the
+/// lowest. `pairs` are those of [`Passage::pairs`]; `is_first_last` tells whether the line enters
+/// the first face of a pair last.
 pub(super) fn last_entered<T, E>(
     pairs: impl Iterator<Item = ([u8; 2], T)>,
     is_first_last: impl Fn(T) -> Result<bool, E>,

@@ -104,6 +104,8 @@ impl<'f, R: Real> TetrahedraInView<'f, R> {
         usize::from(self.places[index])
     }
 
+    // Inlined, as what makes the solid is, so that it is made where it is kept: each copy would wait
+    // for what was just written.
     #[inline(always)]
     fn in_view(&self, index: usize, solid: Tetrahedron<R>) -> TetrahedronInView<R> {
         TetrahedronInView {

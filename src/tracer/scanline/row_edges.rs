@@ -1,9 +1,11 @@
 //! The edges of regions in the rows of a band, each row by itself: nothing is kept of their order
 //! from one row to the next.
 
+use bumpalo_herd::Member;
 use fearless_simd::{Level, Simd, dispatch};
 
 use crate::image::MAX_SIZE;
+use crate::tracer::arena::Blocks;
 use crate::tracer::scanline::active::Edge;
 use crate::tracer::scanline::edges::band_columns::BandColumns;
 use crate::tracer::scanline::edges::table::Regions;
@@ -205,15 +207,21 @@ pub(crate) struct BandEdges<'a> {
 }
 
 impl<'a> BandEdges<'a> {
-    /// The same edges, which `keep` copies to other memory.
-    pub(crate) fn kept<'k>(
+    /// The same in other memory.
+    pub(crate) fn kept_in<'k>(
         &self,
-        keep: impl FnOnce(&[[f64; ROWS]]) -> &'k [[f64; ROWS]],
+        blocks: &Blocks<'k, [f64; ROWS]>,
+        memory: &Member<'k>,
     ) -> BandEdges<'k> {
         BandEdges {
-            edges: keep(self.edges),
+            edges: blocks.keep(self.edges, memory),
             counts: self.counts,
         }
+    }
+
+    /// How many bytes the edges take.
+    pub(crate) fn size(&self) -> usize {
+        size_of_val(self.edges)
     }
 
     /// The edges in a row, by its number in the band.

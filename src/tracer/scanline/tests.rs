@@ -349,11 +349,16 @@ fn a_span_shows_what_its_pixels_are_defined_to_show() {
                     let painters = &mut scratch.painters;
                     for ((first, end), claim) in claims(tracer, row, columns, shown, painters) {
                         for column in first..end {
-                            let ((decision, _), _) = tracer.pixels.pixel(column, row);
+                            let (pixel, _) = tracer.pixels.pixel(column, row);
+                            let decision = pixel.0;
                             let is_right = match claim {
                                 Claim::None => true,
                                 Claim::Shows(claimed) => claimed == decision,
-                                Claim::ShowsSphere(in_light) => in_light == lit(decision),
+                                Claim::ShowsSphere(in_light) => {
+                                    let on_sphere =
+                                        tracer.pixels.pixel_on_sphere(in_light, column, row);
+                                    in_light == lit(decision) && on_sphere.0 == pixel
+                                }
                             };
                             assert!(is_right, "{name}, ({column}, {row}): {decision:?}");
                             match claim {
@@ -399,7 +404,7 @@ fn late_faces_take_no_more_memory_than_they_may() {
                 tracer.trace(0..size, &mut samples, None, None, &mut scratch, &progress);
             });
             let kept = lock(&tracer.late.free);
-            let kept = kept.iter().map(|memory| memory.all.as_bump());
+            let kept = kept.iter().map(|kept| kept.memory.as_bump());
             let kept = kept.map(|bump| bump.allocated_bytes() - bump.chunk_capacity());
             (kept.sum::<usize>() as u64, measured.bytes_max)
         })

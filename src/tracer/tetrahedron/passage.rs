@@ -31,13 +31,13 @@ impl Wall {
 /// Vectors hold so many walls.
 pub(in crate::tracer) const WALLS_AT_ONCE: usize = 4;
 
-/// A tetrahedron has no more walls for lines of one direction: 6.
+/// There are at most 6 walls for lines of one direction.
 const MOST: usize = 2 * WALLS_AT_ONCE;
 
 /// Some of the walls for lines of one direction, first those of faces.
 #[derive(Clone, Copy)]
 pub(in crate::tracer) struct Walls {
-    /// The walls; after them, one of them again.
+    /// The walls; after them, the last of them again.
     all: [Wall; MOST],
     count: u8,
 }
@@ -52,10 +52,11 @@ impl Walls {
     }
 
     const fn add(mut self, wall: Wall) -> Self {
-        if self.count == 0 {
-            self.all = [wall; MOST];
+        let mut index = self.count as usize;
+        while index < MOST {
+            self.all[index] = wall;
+            index += 1;
         }
-        self.all[self.count as usize] = wall;
         self.count += 1;
         self
     }
@@ -70,7 +71,7 @@ impl Walls {
 
     /// Whether any of them is a face's.
     pub(in crate::tracer) fn any_face(&self) -> bool {
-        matches!(self.all[0], Wall::Face { .. }) && self.count > 0
+        matches!(self.all[0], Wall::Face { .. })
     }
 
     /// The walls, as many at once as vectors hold, and how many of these are walls.
@@ -179,9 +180,10 @@ impl Passage {
     }
 }
 
+const SIGNS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
+
 /// By the signs of the faces, as digits.
 static ALL: [Passage; 81] = {
-    const SIGNS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
     let mut all = [Passage::with_signs([Ordering::Less; 4]); 81];
     let mut index = 0;
     while index < all.len() {
@@ -199,7 +201,6 @@ mod tests {
 
     #[test]
     fn all_signs_have_the_faces_and_walls_of_their_definitions() {
-        const SIGNS: [Ordering; 3] = [Ordering::Less, Ordering::Equal, Ordering::Greater];
         for number in 0..81 {
             let signs = [1, 3, 9, 27].map(|power| SIGNS[number / power % 3]);
             let passage = Passage::of(signs);
@@ -238,6 +239,15 @@ mod tests {
             let left = faces(Ordering::Greater).map(face(false));
             let ahead: Vec<Wall> = left.chain(met).collect();
             assert_eq!(passage.ahead.iter().collect::<Vec<_>>(), ahead);
+            for walls in [&passage.creases, &passage.met, &passage.ahead] {
+                let all: Vec<Wall> = walls.iter().collect();
+                let vectors = walls.vectors().flat_map(|(four, count)| &four[..count]);
+                assert!(vectors.eq(&all));
+                let last = walls.vectors().last().map(|(four, _)| four[3]);
+                assert_eq!(last, all.last().copied());
+                let is_face = |wall: &Wall| matches!(wall, Wall::Face { .. });
+                assert_eq!(walls.any_face(), all.iter().any(is_face));
+            }
         }
     }
 }

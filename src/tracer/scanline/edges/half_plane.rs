@@ -111,6 +111,7 @@ impl<'f> HalfPlane<'f> {
     ) -> &'f [HalfPlane<'f>] {
         let mut all = Growing::with_capacity_in(walls.count(), arena);
         let support = plane.and_then(|plane| plane.support);
+        // All points of the plane may lie on the border of a wall: that is told one by one.
         let any_border = walls.any_face() && support.is_some_and(|it| tetrahedron.has_face_in(it));
         if any_border || tetrahedron.may_be_exact() {
             let each = walls

@@ -49,10 +49,12 @@ pub(crate) fn prepare_solids<'f>(
     // at once.
     let is_sphere = |&number: &usize| matches!(picture.scene.solid(number), Solid::Sphere(_));
     let spheres = numbers.iter().copied().filter(is_sphere);
-    let colors = spheres.clone().map(|number| picture.solid_color(number));
-    let colors = collect(arena, colors);
-    let casters = collect(arena, spheres.map(|number| appearances.casters(number)));
-    let mut of_spheres = colors.iter().zip(casters);
+    let count = spheres.clone().count();
+    let mut colors = Growing::with_capacity_in(count, arena);
+    colors.extend(spheres.clone().map(|number| picture.solid_color(number)));
+    let mut casters = Growing::with_capacity_in(count, arena);
+    casters.extend(spheres.map(|number| appearances.casters(number)));
+    let mut of_spheres = colors.into_iter().zip(casters);
     let is_late = appearances.has_shadows && outlines.face_shadows() >= parts.late_from;
     let mut all_appearances = Growing::with_capacity_in(numbers.len(), arena);
     let mut depths = Growing::with_capacity_in(numbers.len(), arena);
@@ -61,9 +63,9 @@ pub(crate) fn prepare_solids<'f>(
         let appearance = match view.solid(solid.number) {
             Solid::Sphere(sphere) => match (of_spheres.next(), solid.outline.ellipse()) {
                 (Some((color, casters)), Some(outline)) => {
-                    appearances.sphere(solid.number, sphere, (outline, *color, casters), parts)
+                    appearances.sphere(solid.number, sphere, (outline, color, casters), parts)
                 }
-                // The outline of a sphere is an ellipse.
+                // Every sphere has a colour, and its outline is an ellipse.
                 _ => Appearance::Flat(parts.paints.add(Decision::Background)),
             },
             Solid::Tetrahedron(t) if is_late => {

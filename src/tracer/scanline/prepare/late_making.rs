@@ -51,19 +51,19 @@ impl<'f> LateFaces<'f> {
         self.made.get_or_init(|| {
             work.spare.reset();
             let LateMemory {
-                all,
+                memory,
                 paints: blocks,
                 ..
             } = maker.memory();
             let color = |decision| maker.source.pixels.color(decision);
             let (faces, regions, paints) = self.make(maker.source, &color, &work.spare);
-            all.alloc(SplitFaces {
+            memory.alloc(SplitFaces {
                 front_faces: faces,
                 kinds: RegionKinds {
-                    all: all.alloc_slice_copy(regions.kinds.all),
+                    all: memory.alloc_slice_copy(regions.kinds.all),
                     receivers: regions.kinds.receivers,
                 },
-                paints: paints.kept(|paints| blocks.keep(paints, all)),
+                paints: paints.kept_in(blocks, memory),
                 kept: self.keep(&regions, row, maker, (&work.spare, &mut work.edges)),
             })
         })
@@ -99,12 +99,12 @@ impl<'f> LateFaces<'f> {
             edges.clear();
             let added = cross(regions, row, edges, maker.source, spare);
             let LateMemory {
-                all, edges: blocks, ..
+                memory,
+                edges: blocks,
+                ..
             } = maker.memory();
-            let band = edges.band(&added).kept(|edges| {
-                maker.take(size_of_val(edges));
-                blocks.keep(edges, all)
-            });
+            let band = edges.band(&added).kept_in(blocks, memory);
+            maker.take(band.size());
             return Kept::Edges { first: row, band };
         }
         let is_ellipse = |region: &Region<'_>| region.ellipse().is_some();
@@ -122,7 +122,7 @@ impl<'f> LateFaces<'f> {
         (regions, has_memory): (&Regions<'_>, bool),
         maker: &LateMaker<'_, 'f>,
     ) -> &'f [KeptRegion<'f>] {
-        let (source, memory) = (maker.source, &maker.memory().all);
+        let (source, memory) = (maker.source, &maker.memory().memory);
         let picture = source.pixels.bounded();
         let view = picture.view(self.mirrored);
         // A tetrahedron's shadow has all rows of the solid. So each has a region, in the order of

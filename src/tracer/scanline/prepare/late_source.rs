@@ -24,20 +24,20 @@ pub(crate) struct LateSource<'f> {
     pub(crate) level: Level,
     /// The memory for what threads make.
     pub(crate) threads: &'f Herd,
-    /// Memory that a thread used before, and no thread uses now; that of few threads needs none
-    /// itself.
-    pub(crate) free: Mutex<SmallVec<[LateMemory<'f>; 16]>>,
-    /// How many bytes of it regions may take. Each thread may go beyond this with one solid and
-    /// with what it has not counted yet, and then each shadow takes what tells its caster and its
-    /// rows.
+    /// How many bytes of it regions may take. Each thread may go beyond this with one solid, with
+    /// what it has not counted yet, and with what is left over of its blocks; and then each shadow
+    /// takes what tells its caster and its rows.
     pub(crate) most: usize,
     /// How many they take.
     pub(crate) taken: AtomicUsize,
+    /// The parts of it that a thread used before, and no thread uses now. A list of so many lies
+    /// here: a frame on few threads asks the system for no memory.
+    pub(crate) free: Mutex<SmallVec<[LateMemory<'f>; 16]>>,
 }
 
 /// The memory in which one thread at a time keeps late faces.
 pub(crate) struct LateMemory<'f> {
-    pub(crate) all: Member<'f>,
+    pub(crate) memory: Member<'f>,
     /// Parts of it, for edges and paints.
     pub(super) edges: Blocks<'f, [f64; ROWS]>,
     pub(super) paints: Blocks<'f, Paint>,
@@ -79,7 +79,7 @@ impl<'s, 'f> LateMaker<'s, 'f> {
         self.memory.get_or_init(|| {
             let free = lock(&self.source.free).pop();
             free.unwrap_or_else(|| LateMemory {
-                all: self.source.threads.get(),
+                memory: self.source.threads.get(),
                 edges: Blocks::default(),
                 paints: Blocks::default(),
             })

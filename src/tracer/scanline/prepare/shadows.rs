@@ -132,9 +132,10 @@ pub(crate) fn shadows_on<'f>(
                 let lines = (&t.solid, to_light.vector);
                 let (plane, screen, signs) = (Some(plane), (grid, level), t.solid.facing_light);
                 let passage = Passage::of(signs);
-                let walls = match is_ahead {
-                    true => &passage.met,
-                    false => &passage.ahead,
+                let walls = if is_ahead {
+                    &passage.met
+                } else {
+                    &passage.ahead
                 };
                 let planes = HalfPlane::all_of(lines, walls, plane, screen, arena);
                 Region::new(planes, None, grid)

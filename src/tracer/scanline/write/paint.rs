@@ -2,9 +2,11 @@
 
 use bumpalo::Bump;
 use bumpalo::collections::Vec;
+use bumpalo_herd::Member;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
+use crate::tracer::arena::Blocks;
 use crate::tracer::decision::Decision;
 use crate::tracer::scanline::write::pixels;
 
@@ -103,9 +105,13 @@ impl std::ops::Index<PaintNumber> for AllPaints<'_> {
 }
 
 impl AllPaints<'_> {
-    /// The same paints, which `keep` copies to other memory.
-    pub(crate) fn kept<'k>(&self, keep: impl FnOnce(&[Paint]) -> &'k [Paint]) -> AllPaints<'k> {
-        AllPaints(keep(self.0))
+    /// The same in other memory.
+    pub(crate) fn kept_in<'k>(
+        &self,
+        blocks: &Blocks<'k, Paint>,
+        memory: &Member<'k>,
+    ) -> AllPaints<'k> {
+        AllPaints(blocks.keep(self.0, memory))
     }
 }
 
