@@ -404,7 +404,7 @@ fn late_faces_take_no_more_memory_than_they_may() {
                 tracer.trace(0..size, &mut samples, None, None, &mut scratch, &progress);
             });
             let kept = lock(&tracer.late.free);
-            let kept = kept.iter().map(|kept| kept.memory.as_bump());
+            let kept = kept.iter().map(|kept| kept.member.as_bump());
             let kept = kept.map(|bump| bump.allocated_bytes() - bump.chunk_capacity());
             (kept.sum::<usize>() as u64, measured.bytes_max)
         })

@@ -51,19 +51,19 @@ impl<'f> LateFaces<'f> {
         self.made.get_or_init(|| {
             work.spare.reset();
             let LateMemory {
-                memory,
+                member,
                 paints: blocks,
                 ..
             } = maker.memory();
             let color = |decision| maker.source.pixels.color(decision);
             let (faces, regions, paints) = self.make(maker.source, &color, &work.spare);
-            memory.alloc(SplitFaces {
+            member.alloc(SplitFaces {
                 front_faces: faces,
                 kinds: RegionKinds {
-                    all: memory.alloc_slice_copy(regions.kinds.all),
+                    all: member.alloc_slice_copy(regions.kinds.all),
                     receivers: regions.kinds.receivers,
                 },
-                paints: paints.kept_in(blocks, memory),
+                paints: paints.kept_in(blocks, member),
                 kept: self.keep(&regions, row, maker, (&work.spare, &mut work.edges)),
             })
         })
@@ -99,11 +99,11 @@ impl<'f> LateFaces<'f> {
             edges.clear();
             let added = cross(regions, row, edges, maker.source, spare);
             let LateMemory {
-                memory,
+                member,
                 edges: blocks,
                 ..
             } = maker.memory();
-            let band = edges.band(&added).kept_in(blocks, memory);
+            let band = edges.band(&added).kept_in(blocks, member);
             maker.take(band.size());
             return Kept::Edges { first: row, band };
         }
@@ -122,7 +122,7 @@ impl<'f> LateFaces<'f> {
         (regions, has_memory): (&Regions<'_>, bool),
         maker: &LateMaker<'_, 'f>,
     ) -> &'f [KeptRegion<'f>] {
-        let (source, memory) = (maker.source, &maker.memory().memory);
+        let (source, memory) = (maker.source, &maker.memory().member);
         let picture = source.pixels.bounded();
         let view = picture.view(self.mirrored);
         // A tetrahedron's shadow has all rows of the solid. So each has a region, in the order of

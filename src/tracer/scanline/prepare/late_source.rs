@@ -37,7 +37,8 @@ pub(crate) struct LateSource<'f> {
 
 /// The memory in which one thread at a time keeps late faces.
 pub(crate) struct LateMemory<'f> {
-    pub(crate) memory: Member<'f>,
+    /// All of it.
+    pub(crate) member: Member<'f>,
     /// Parts of it, for edges and paints.
     pub(super) edges: Blocks<'f, [f64; ROWS]>,
     pub(super) paints: Blocks<'f, Paint>,
@@ -79,7 +80,7 @@ impl<'s, 'f> LateMaker<'s, 'f> {
         self.memory.get_or_init(|| {
             let free = lock(&self.source.free).pop();
             free.unwrap_or_else(|| LateMemory {
-                memory: self.source.threads.get(),
+                member: self.source.threads.get(),
                 edges: Blocks::default(),
                 paints: Blocks::default(),
             })
